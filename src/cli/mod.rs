@@ -1,0 +1,59 @@
+//! The command line, a file a command. Results go to stdout or to the named file, everything else to stderr.
+
+mod check;
+mod diff;
+mod failure;
+mod interrupt;
+mod output;
+mod progress;
+mod render;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// A Whitted ray tracer that reports its speed beside its error.
+#[derive(Debug, Parser)]
+#[command(name = "wavelane", version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render a scene file to a picture
+    Render(render::Arguments),
+    /// Read and validate a scene file, and render nothing
+    Check(check::Arguments),
+    /// Compare two pictures of the same size
+    Diff(diff::Arguments),
+}
+
+/// Runs the program with its arguments, the program's name first.
+///
+/// The exit code is 0 when the work is done; 1 when it failed; 2 for usage; 3 for an input that cannot be opened, parsed or
+/// accepted; 4 for a comparison over its limit; 130 when interrupted.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(usage) => {
+            // Help and version are results, wrong usage is not; clap knows which goes where, and its exit codes are ours.
+            let _ = usage.print();
+            return ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(2));
+        }
+    };
+    let result = match arguments.command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::diagnostic(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! `wavelane render SCENE -o OUT`.
+
+use super::progress::{Progress, Style};
+use super::{Failure, interrupt, output};
+use crate::film::{self, BitDepth, Region};
+use crate::load;
+use crate::measure::{Isa, RenderReport, Seconds};
+use crate::render::{RenderOptions, Rendered, render};
+use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
+use clap::ValueEnum;
+use std::path::PathBuf;
+use std::time::Instant;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// Scene file: .toml, .nff, .obj or .ply
+    scene: PathBuf,
+    /// Picture to write: .png (sRGB), .exr or .npy (linear f32)
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// What traces the rays
+    #[arg(long, value_enum, default_value = "reference")]
+    engine: Engine,
+    /// Rays that the kernels of the simd engine take at once
+    #[arg(long, value_name = "N", value_parser = ["4", "8", "16"])]
+    lanes: Option<String>,
+    /// Worker threads [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Size of the image, pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+    /// Render only this part, pixels from the top left, X1 and Y1 excluded; the file holds the part alone
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
+    crop: Option<Region>,
+    /// Where the samples of a pixel lie [default: the scene's]
+    #[arg(long, value_enum)]
+    sampling: Option<SamplingName>,
+    /// n × n samples a pixel, 1–64 [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(RenderSettings::MAX_SAMPLES)))]
+    samples: Option<u32>,
+    /// What random samples start from [default: the scene's]
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// The deepest ray, 0–64; primary rays are depth 0 [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(RenderSettings::MAX_DEPTH)))]
+    max_depth: Option<u32>,
+    /// Bits a channel of a PNG
+    #[arg(long, value_name = "BITS", value_parser = ["8", "16"], default_value = "8")]
+    bits: String,
+    /// How far the render is, on stderr
+    #[arg(long, value_enum, default_value = "auto")]
+    progress: Style,
+    /// Write a report of the run as JSON, to stdout if FILE is -
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Engine {
+    /// Wavefront, SIMD lanes (not built yet)
+    Simd,
+    /// Wavefront, one lane (not built yet)
+    Scalar,
+    /// Recursive, f64, from the textbook
+    Reference,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum SamplingName {
+    Regular,
+    Random,
+    Jittered,
+}
+
+fn size(word: &str) -> Result<(u32, u32), String> {
+    let sides = word.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let (width, height) = sides.ok_or("a size is written like 800x600")?;
+    ImageSettings::check_size(width, height)
+}
+
+fn crop(word: &str) -> Result<Region, String> {
+    let edges: Option<Vec<u32>> = word.split(',').map(|edge| edge.trim().parse().ok()).collect();
+    match edges.as_deref() {
+        Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Region { x0, y0, x1, y1 }),
+        Some([_, _, _, _]) => Err("a crop X0,Y0,X1,Y1 needs X0 < X1 and Y0 < Y1".to_owned()),
+        _ => Err("a crop is written X0,Y0,X1,Y1, like 0,0,320,240".to_owned()),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    check_usage(arguments)?;
+    let start = Instant::now();
+    let mut loaded = load::load(&arguments.scene)?;
+    output::warnings(&loaded);
+    let scene = &mut loaded.scene;
+    apply(arguments, scene);
+    let load = start.elapsed().as_secs_f64();
+    film::check_writable(&arguments.output)?;
+
+    let whole = Region::whole(scene.image.width, scene.image.height);
+    let region = arguments.crop.unwrap_or(whole);
+    let progress = Progress::new(arguments.progress, region.pixels());
+    let options = RenderOptions {
+        region,
+        threads: arguments.threads.map_or(0, usize::from),
+        on_progress: &|done| progress.report(done),
+        stop: interrupt::flag(),
+    };
+    let rendered = render(scene, &options);
+    progress.finish();
+    let rendered = rendered?;
+
+    let write_start = Instant::now();
+    let depth = if arguments.bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight };
+    film::write(&rendered.image, &arguments.output, depth)?;
+    let seconds = Seconds {
+        load,
+        prepare: rendered.prepare_seconds,
+        trace: rendered.trace_seconds,
+        write: write_start.elapsed().as_secs_f64(),
+        total: start.elapsed().as_secs_f64(),
+    };
+    match &arguments.json {
+        Some(path) => output::json(&report(arguments, scene, &rendered, seconds), path),
+        None => Ok(()),
+    }
+}
+
+/// What clap cannot see in one argument alone.
+fn check_usage(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.engine != Engine::Reference {
+        let name =
+            arguments.engine.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned());
+        return Err(Failure::Usage(format!("the {name} engine is not built yet; use --engine reference")));
+    }
+    if arguments.lanes.is_some() {
+        output::diagnostic(&"warning: --lanes belongs to the simd engine and changes nothing here");
+    }
+    film::Format::of(&arguments.output)?;
+    Ok(())
+}
+
+/// The command line's settings take the place of the scene's.
+fn apply(arguments: &Arguments, scene: &mut Scene) {
+    let (image, render) = (&mut scene.image, &mut scene.render);
+    if let Some((width, height)) = arguments.size {
+        (image.width, image.height) = (width, height);
+    }
+    if let Some(sampling) = arguments.sampling {
+        render.sampling = match sampling {
+            SamplingName::Regular => Sampling::Regular,
+            SamplingName::Random => Sampling::Random,
+            SamplingName::Jittered => Sampling::Jittered,
+        };
+    }
+    render.samples = arguments.samples.unwrap_or(render.samples);
+    render.seed = arguments.seed.unwrap_or(render.seed);
+    render.max_depth = arguments.max_depth.unwrap_or(render.max_depth);
+}
+
+fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Seconds) -> RenderReport {
+    RenderReport {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: arguments.scene.display().to_string(),
+        output: arguments.output.display().to_string(),
+        engine: "reference",
+        lanes: 1,
+        isa: Isa::BUILT_FOR,
+        threads: rendered.threads,
+        size: [scene.image.width, scene.image.height],
+        rendered: [rendered.image.width, rendered.image.height],
+        sampling: scene.render.sampling.name(),
+        samples: scene.render.samples,
+        max_depth: scene.render.max_depth,
+        primitives: scene.geometry.primitive_count(),
+        rays: rendered.rays,
+        seconds,
+    }
+}

@@ -1,0 +1,16 @@
+//! Where samples lie, what a picture is, and the files it is kept in.
+
+mod exr;
+mod format;
+mod image;
+mod npy;
+mod png;
+mod sampling;
+mod srgb;
+mod whole_file;
+
+pub use format::{BitDepth, FilmError, Format, check_writable, read, write};
+pub use image::{Image, Region};
+pub use sampling::SamplePattern;
+pub use srgb::decode_srgb;
+pub use whole_file::write_whole;

@@ -1,0 +1,33 @@
+//! PNG: clamped to [0, 1] and sRGB, 8 or 16 bits a channel.
+
+use super::{BitDepth, Image, srgb};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageFormat};
+use std::io::{self, Write};
+
+pub(super) fn write(image: &Image, depth: BitDepth, writer: &mut impl Write) -> io::Result<()> {
+    let channels = image.pixels.as_flattened();
+    let (bytes, color) = match depth {
+        BitDepth::Eight => {
+            (channels.iter().map(|&channel| srgb::code_8(channel)).collect(), ExtendedColorType::Rgb8)
+        }
+        BitDepth::Sixteen => {
+            let codes: Vec<u16> = channels.iter().map(|&channel| srgb::code_16(channel)).collect();
+            (bytemuck::cast_slice(&codes).to_vec(), ExtendedColorType::Rgb16)
+        }
+    };
+    PngEncoder::new_with_quality(writer, CompressionType::Default, FilterType::Adaptive)
+        .write_image(&bytes, image.width, image.height, color)
+        .map_err(io::Error::other)
+}
+
+/// sRGB values 0–1; an alpha channel is left aside, grey is spread over the channels.
+pub(super) fn read(bytes: &[u8]) -> Result<Image, String> {
+    let decoded = image::load_from_memory_with_format(bytes, ImageFormat::Png)
+        .map_err(|error| format!("this is not a PNG that can be read: {error}"))?;
+    // 8-bit codes become 16-bit ones by × 257, so dividing by 65535 is exact for both.
+    let codes = decoded.into_rgb16();
+    let (width, height) = codes.dimensions();
+    let unit = |code: u16| f32::from(code) / f32::from(u16::MAX);
+    Ok(Image { width, height, pixels: codes.pixels().map(|pixel| pixel.0.map(unit)).collect() })
+}

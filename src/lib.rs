@@ -1,0 +1,41 @@
+//! A data-oriented Whitted ray tracer for the CPU.
+//!
+//! Data flows one way:
+//!
+//! ```text
+//! load  →  scene  →  reference  →  film
+//! ```
+//!
+//! - [`load`] reads a scene file and ends in a [`scene::Scene`] or in an error that names file, line and column;
+//! - [`scene`] is plain data in the user's units;
+//! - [`reference`] traces it in scalar f64, from the textbook: the truth that faster engines are checked against;
+//! - [`film`] holds sample positions, pixels and picture files;
+//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
+//!
+//! ```no_run
+//! use std::sync::atomic::AtomicBool;
+//! use wavelane::{film, load, render};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = load::load("scenes/glass.toml".as_ref())?.scene;
+//! let options = render::RenderOptions {
+//!     region: film::Region::whole(scene.image.width, scene.image.height),
+//!     threads: 0,
+//!     on_progress: &|_| {},
+//!     stop: &AtomicBool::new(false),
+//! };
+//! let rendered = render::render(&scene, &options)?;
+//! film::write(&rendered.image, "glass.png".as_ref(), film::BitDepth::Eight)?;
+//! # Ok(())
+//! # }
+//! ```
+
+pub mod cli;
+pub mod film;
+pub mod load;
+mod math;
+pub mod measure;
+pub mod rays;
+pub mod reference;
+pub mod render;
+pub mod scene;

@@ -1,0 +1,57 @@
+//! Scene files: a file a format; all end in a [`Scene`] or in an error that says where, what, and what would be right.
+//!
+//! - `text`: a file as text, with lines and columns; `words`: its words; `number`: what a number may be
+//! - `toml`: the project's own format; `nff`: Haines' Neutral File Format
+//! - `obj`, `mtl`, `ply`: meshes; `mesh`: their faces, transforms and materials on the way into the scene
+//! - `framing`: the camera and the light of a file that has none
+
+mod error;
+mod framing;
+mod mesh;
+mod mtl;
+mod nff;
+mod number;
+mod obj;
+mod ply;
+mod suggest;
+mod text;
+mod toml;
+mod words;
+
+pub use error::{Cause, InputError, Place, Warning};
+
+use crate::scene::Scene;
+use error::Warnings;
+use std::path::Path;
+
+/// A scene, and what its user should know about it.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// What was read but not kept, or looks like a mistake; in order of appearance, each kind once.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads a scene file in the format of its name's ending: `.toml`, `.nff`, `.obj` or `.ply`.
+///
+/// # Errors
+/// The first thing in the file, or in a file that it names, that cannot be opened, parsed or accepted.
+pub fn load(path: &Path) -> Result<Loaded, InputError> {
+    const KNOWN: &str = "a scene file ends in .toml, .nff, .obj or .ply";
+    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    let mut warnings = Warnings::default();
+    let scene = match extension.as_deref() {
+        Some("toml") => toml::load(path, &mut warnings),
+        Some("nff") => nff::load(path, &mut warnings),
+        Some("obj" | "ply") => mesh::load_alone(path, &mut warnings),
+        _ if path.is_dir() => {
+            Err(InputError::refused(path, Place::File, format!("this is a folder; {KNOWN}")))
+        }
+        Some(other) => {
+            Err(InputError::refused(path, Place::File, format!("unknown ending `.{other}`; {KNOWN}")))
+        }
+        None => Err(InputError::refused(path, Place::File, format!("the name has no ending; {KNOWN}"))),
+    }?;
+    Ok(Loaded { scene, warnings: warnings.into_list() })
+}

@@ -1,0 +1,304 @@
+//! Wavefront OBJ, read by `tobj`.
+//!
+//! The library says neither where nor what it trips over, makes normals up for corners without one, panics on some short
+//! lines and knows no continued lines. So a first pass walks the logical lines, refuses what is wrong with its place, and
+//! hands on plain lines only: vertices, normals, faces of `v` or `v//vn`, and material names.
+
+use super::error::{InputError, Place, Warnings};
+use super::mesh::Mesh;
+use super::mtl::{self, Library};
+use super::number;
+use super::suggest::did_you_mean;
+use super::text::Text;
+use glam::DVec3;
+use std::fmt::Write;
+use std::path::Path;
+
+pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) -> Result<Mesh, InputError> {
+    let text = Text::read(path)?;
+    let mut plain = Plain {
+        text: &text,
+        wants_materials,
+        library: Library::default(),
+        lines: String::new(),
+        vertices: 0,
+        normals: 0,
+        faces_have_normals: Vec::new(),
+    };
+    for line in logical_lines(&text.content) {
+        plain.add(&line, warnings)?;
+    }
+    if plain.faces_have_normals.is_empty() {
+        return Err(InputError::refused(
+            path,
+            Place::File,
+            "the file has no faces (`f`), so there is nothing to see",
+        ));
+    }
+    let (lines, faces_have_normals) = (plain.lines, plain.faces_have_normals);
+    parse(path, &lines, plain.library, &faces_have_normals)
+}
+
+/// A line with its continuations joined and its comment cut off.
+pub(super) struct LogicalLine<'a> {
+    pub(super) words: Vec<(&'a str, usize)>,
+    /// Where the line, or what comes after its first word, ends.
+    end: usize,
+}
+
+impl<'a> LogicalLine<'a> {
+    /// What follows the first word, which may hold spaces.
+    pub(super) fn rest(&self, content: &'a str) -> &'a str {
+        self.words.get(1).map_or("", |&(_, offset)| content[offset..self.end].trim_end())
+    }
+}
+
+/// The lines of an OBJ or MTL file that say something.
+pub(super) fn logical_lines(content: &str) -> Vec<LogicalLine<'_>> {
+    let mut lines: Vec<LogicalLine<'_>> = Vec::new();
+    let mut continued = false;
+    let mut offset = 0;
+    for raw in content.split_inclusive('\n') {
+        let line = raw.trim_end();
+        let code = line.split('#').next().unwrap_or_default();
+        let (code, continues) = match code.trim_end().strip_suffix('\\') {
+            Some(code) => (code, true),
+            None => (code, false),
+        };
+        let words =
+            code.split_whitespace().map(|word| (word, offset + (word.as_ptr().addr() - raw.as_ptr().addr())));
+        let end = offset + code.len();
+        match lines.last_mut() {
+            Some(last) if continued => {
+                last.words.extend(words);
+                last.end = end;
+            }
+            _ => lines.push(LogicalLine { words: words.collect(), end }),
+        }
+        continued = continues;
+        offset += raw.len();
+    }
+    lines.retain(|line| !line.words.is_empty());
+    lines
+}
+
+/// What the library gets to read.
+struct Plain<'a> {
+    text: &'a Text,
+    wants_materials: bool,
+    library: Library,
+    lines: String,
+    vertices: i64,
+    normals: i64,
+    faces_have_normals: Vec<bool>,
+}
+
+impl Plain<'_> {
+    fn add(&mut self, line: &LogicalLine<'_>, warnings: &mut Warnings) -> Result<(), InputError> {
+        let Some((&(keyword, offset), arguments)) = line.words.split_first() else { return Ok(()) };
+        let error = |message: String| self.text.error(offset, message);
+        match keyword {
+            "v" => {
+                // After x, y, z a file may have w, or a colour, which is not used here.
+                if !matches!(arguments.len(), 3 | 4 | 6 | 7) {
+                    let message =
+                        format!("a vertex (`v`) has three coordinates; this one has {}", arguments.len());
+                    return Err(error(message));
+                }
+                self.numbers("v", arguments)?;
+                self.vertices += 1;
+            }
+            "vn" => {
+                if arguments.len() != 3 {
+                    return Err(error(format!(
+                        "a normal (`vn`) has three numbers; this one has {}",
+                        arguments.len()
+                    )));
+                }
+                self.numbers("vn", arguments)?;
+                self.normals += 1;
+            }
+            "f" => self.face(offset, arguments)?,
+            "mtllib" if self.wants_materials => self.library(line, offset, warnings)?,
+            "usemtl" if self.wants_materials => {
+                let name = line.rest(&self.text.content);
+                if !self.library.names().any(|known| known == name) {
+                    let meant = did_you_mean(name, self.library.names());
+                    let name = number::shortened(name);
+                    return Err(error(format!(
+                        "unknown material `{name}`; no material library (`mtllib`) before this line has it{meant}"
+                    )));
+                }
+                self.line(format_args!("usemtl {name}"));
+            }
+            // Texture coordinates, names of objects and groups, smoothing and the choice of materials made elsewhere.
+            "vt" | "vp" | "o" | "g" | "s" | "mg" | "mtllib" | "usemtl" | "bevel" | "c_interp"
+            | "d_interp" | "lod" => {}
+            "shadow_obj" | "trace_obj" => {}
+            "l" | "p" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm" | "trim"
+            | "hole" | "scrv" | "sp" | "end" | "con" | "ctech" | "stech" | "call" | "csh" => {
+                warnings.add(keyword, &self.text.path, self.text.place(offset), || {
+                    format!("`{keyword}` is not modelled and left out; only faces (`f`) are shown")
+                });
+            }
+            other => {
+                let known = ["v", "vn", "vt", "f", "mtllib", "usemtl", "o", "g", "s"];
+                let meant = did_you_mean(other, known);
+                return Err(error(format!("unknown keyword `{}`{meant}", number::shortened(other))));
+            }
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, line: std::fmt::Arguments<'_>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.lines, "{line}");
+    }
+
+    /// Checks the numbers of a vertex or normal and hands on x, y, z and, where there is one, w.
+    fn numbers(&mut self, keyword: &str, words: &[(&str, usize)]) -> Result<(), InputError> {
+        let mut line = keyword.to_owned();
+        for (place, &(word, offset)) in words.iter().enumerate() {
+            let value = number::parse(word).map_err(|message| self.text.error(offset, message))?;
+            if words.len() == 4 && place == 3 && value == 0.0 {
+                return Err(self.text.error(offset, "the weight w of a vertex must not be 0"));
+            }
+            if place < 3 || words.len() == 4 {
+                line += " ";
+                line += word;
+            }
+        }
+        self.line(format_args!("{line}"));
+        Ok(())
+    }
+
+    fn face(&mut self, offset: usize, corners: &[(&str, usize)]) -> Result<(), InputError> {
+        if corners.len() < 3 {
+            let message = format!("a face needs at least 3 corners; this one has {}", corners.len());
+            return Err(self.text.error(offset, message));
+        }
+        let corners: Vec<(i64, Option<i64>)> =
+            corners.iter().map(|&(word, offset)| self.corner(word, offset)).collect::<Result<_, _>>()?;
+        let have_normals = corners.iter().all(|(_, normal)| normal.is_some());
+        let mut line = "f".to_owned();
+        for (vertex, normal) in corners {
+            match normal.filter(|_| have_normals) {
+                Some(normal) => line += &format!(" {vertex}//{normal}"),
+                None => line += &format!(" {vertex}"),
+            }
+        }
+        self.line(format_args!("{line}"));
+        self.faces_have_normals.push(have_normals);
+        Ok(())
+    }
+
+    /// Vertex and normal of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1.
+    fn corner(&self, word: &str, offset: usize) -> Result<(i64, Option<i64>), InputError> {
+        let face = self.faces_have_normals.len() + 1;
+        let error = |message: String| self.text.error(offset, format!("face {face}: {message}"));
+        let malformed = || {
+            error(format!(
+                "expected a corner like 3, 3/1, 3//2 or 3/1/2, found `{}`",
+                number::shortened(word)
+            ))
+        };
+        let parts: Vec<&str> = word.split('/').collect();
+        let (vertex, normal) = match *parts.as_slice() {
+            [vertex] | [vertex, _] | [vertex, _, ""] => (vertex, None),
+            [vertex, _, normal] => (vertex, Some(normal)),
+            _ => return Err(malformed()),
+        };
+        let index = |word: &str, what: &str, count: i64| {
+            let index: i64 = word.parse().map_err(|_| malformed())?;
+            // Negative indices count back from the latest element.
+            let from_1 = if index < 0 { count + 1 + index } else { index };
+            if (1..=count).contains(&from_1) {
+                Ok(from_1)
+            } else {
+                Err(error(format!("{what} {index} is out of range; the lines before this one have {count}")))
+            }
+        };
+        let vertex = index(vertex, "vertex", self.vertices)?;
+        let normal = normal.map(|normal| index(normal, "normal", self.normals)).transpose()?;
+        Ok((vertex, normal))
+    }
+
+    fn library(
+        &mut self,
+        line: &LogicalLine<'_>,
+        offset: usize,
+        warnings: &mut Warnings,
+    ) -> Result<(), InputError> {
+        let name = line.rest(&self.text.content);
+        if name.is_empty() {
+            return Err(self.text.error(offset, "`mtllib` needs the name of a material library"));
+        }
+        // One name with spaces, or several names.
+        let whole = self.text.path.with_file_name(name);
+        let names = if whole.is_file() { vec![name] } else { name.split_whitespace().collect() };
+        for name in names {
+            let path = self.text.path.with_file_name(name);
+            if let Err(why) = std::fs::metadata(&path) {
+                return Err(self.text.error(
+                    offset,
+                    format!(
+                        "the material library `{name}` cannot be opened: {why}; its name is taken relative to the \
+                         folder of this file"
+                    ),
+                ));
+            }
+            mtl::read(&path, &mut self.library, warnings)?;
+        }
+        Ok(())
+    }
+}
+
+fn parse(
+    path: &Path,
+    lines: &str,
+    library: Library,
+    faces_have_normals: &[bool],
+) -> Result<Mesh, InputError> {
+    let refused = |why: &dyn std::fmt::Display| {
+        InputError::refused(path, Place::File, format!("this is not an OBJ file that can be read: {why}"))
+    };
+    let options =
+        tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
+    let (for_library, materials) = library.into_parts();
+    // The library asks for materials where it meets a `mtllib`; they are all known here, before the first line.
+    let lines = format!("mtllib all\n{lines}");
+    let (models, _) = tobj::load_obj_buf(&mut lines.as_bytes(), &options, |_| Ok(for_library.clone()))
+        .map_err(|error| refused(&error))?;
+
+    let mut mesh = Mesh::new(path);
+    mesh.materials = materials;
+    let mut faces_have_normals = faces_have_normals.iter();
+    for model in models {
+        let part = model.mesh;
+        let (first_position, first_normal) = (mesh.positions.len(), mesh.normals.len());
+        let vectors = |flat: &[f64]| -> Vec<DVec3> { flat.chunks_exact(3).map(DVec3::from_slice).collect() };
+        mesh.positions.extend(vectors(&part.positions));
+        mesh.normals.extend(vectors(&part.normals));
+        let material = part.material_id.and_then(|index| u32::try_from(index).ok());
+        let offset_by = |indices: &[u32], first: usize| -> Option<Vec<u32>> {
+            let first = u32::try_from(first).ok()?;
+            indices.iter().map(|index| index.checked_add(first)).collect()
+        };
+        let mut start = 0;
+        let triangles = vec![3; if part.face_arities.is_empty() { part.indices.len() / 3 } else { 0 }];
+        for &size in part.face_arities.iter().chain(&triangles) {
+            let run = start..start + size as usize;
+            start = run.end;
+            let too_many = || refused(&"it has more vertices than 32 bits count");
+            let corners = offset_by(&part.indices[run.clone()], first_position).ok_or_else(too_many)?;
+            // Where the file gives a face no normals, those that the library makes up are left aside.
+            let has_normals = faces_have_normals.next().copied().unwrap_or(false);
+            let normals = match has_normals {
+                true => Some(offset_by(&part.normal_indices[run], first_normal).ok_or_else(too_many)?),
+                false => None,
+            };
+            mesh.add_face(&corners, normals.as_deref(), material);
+        }
+    }
+    Ok(mesh)
+}

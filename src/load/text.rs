@@ -1,0 +1,98 @@
+//! A file read as text, and where in it something is.
+
+use super::error::{Cause, InputError, Place, Warnings};
+use crate::scene::{Added, GeometryProblem};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// The bytes of a file.
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, InputError> {
+    let refused = |why: &dyn std::fmt::Display| {
+        InputError::refused(path, Place::File, format!("cannot be opened: {why}; check the name"))
+    };
+    let mut file = File::open(path).map_err(|why| refused(&why))?;
+    if path.is_dir() {
+        return Err(refused(&"it is a folder"));
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(|why| InputError {
+        path: path.to_owned(),
+        place: Place::File,
+        message: format!("reading it failed midway: {why}"),
+        cause: Cause::ReadFailed,
+    })?;
+    Ok(bytes)
+}
+
+/// A text file.
+pub(super) struct Text {
+    pub(super) path: PathBuf,
+    pub(super) content: String,
+}
+
+impl Text {
+    /// Reads a file that must be UTF-8; a byte order mark is passed over.
+    pub(super) fn read(path: &Path) -> Result<Self, InputError> {
+        let bytes = read_bytes(path)?;
+        let (bytes, error) = match String::from_utf8(bytes) {
+            Ok(mut content) => {
+                if content.starts_with('\u{feff}') {
+                    content.drain(..'\u{feff}'.len_utf8());
+                }
+                return Ok(Self { path: path.to_owned(), content });
+            }
+            Err(error) => {
+                let at = error.utf8_error();
+                (error.into_bytes(), at)
+            }
+        };
+        let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).into_owned();
+        let bad = bytes[error.valid_up_to()];
+        let text = Self { path: path.to_owned(), content: good };
+        let end = text.content.len();
+        Err(text.error(end, format!("byte 0x{bad:02x} is not UTF-8 text; is this a binary file?")))
+    }
+
+    /// Line and column of a byte offset.
+    pub(super) fn place(&self, offset: usize) -> Place {
+        let before = &self.content[..self.content.floor_char_boundary(offset)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Place::At {
+            line: before.bytes().filter(|&byte| byte == b'\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+
+    /// Refuses what is at a byte offset.
+    pub(super) fn error(&self, offset: usize, message: impl Into<String>) -> InputError {
+        InputError::refused(&self.path, self.place(offset), message)
+    }
+
+    /// Refuses a primitive that begins at a byte offset, or warns of what became of it.
+    pub(super) fn added(
+        &self,
+        offset: usize,
+        added: Result<Added, GeometryProblem>,
+        warnings: &mut Warnings,
+    ) -> Result<(), InputError> {
+        match added {
+            Err(problem) => return Err(self.error(offset, problem.to_string())),
+            Ok(Added::Flat) => {}
+            Ok(Added::WithoutArea) => {
+                warnings.add("without area", &self.path, self.place(offset), || {
+                    "this shape has no area and is left out".to_owned()
+                });
+            }
+            Ok(Added::Bent { off_plane }) => {
+                warnings.add("bent", &self.path, self.place(offset), || {
+                    format!(
+                        "this polygon is not quite planar: a vertex lies {off_plane:.1e} of the polygon's extent off \
+                         its plane, and neighbours may not meet exactly"
+                    )
+                });
+            }
+        }
+        Ok(())
+    }
+}

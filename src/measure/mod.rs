@@ -1,0 +1,7 @@
+//! What is said of a result: how far two pictures lie apart, and what a run did and how long it took.
+
+mod difference;
+mod report;
+
+pub use difference::{Difference, heat_map};
+pub use report::{Isa, RenderReport, Seconds};

@@ -1,0 +1,20 @@
+//! The truth that everything else is checked against: a scalar, recursive f64 ray tracer written from the formulas.
+//!
+//! Whitted, "An Improved Illumination Model for Shaded Display", 1980, with Blinn-Phong highlights, Schlick's
+//! reflectance and Beer's law. It reads the scene and the film's sample positions and shares no arithmetic with any
+//! other engine, so that a mistake has to be made twice to go unseen.
+//!
+//! - `camera`: from a point of the image to a ray
+//! - `shape`: where a ray meets a sphere, a triangle or a polygon, and what the surface is like there
+//! - `hierarchy`: the same answers without trying every primitive
+//! - `optics`: mirror and refraction directions, and the shares of light that take them
+//! - `tracer`: the recursion that puts these together
+
+mod camera;
+mod hierarchy;
+mod optics;
+mod ray;
+mod shape;
+mod tracer;
+
+pub use tracer::Tracer;

@@ -1,0 +1,285 @@
+//! Where a ray meets a sphere, a triangle or a polygon, and what the surface is like there.
+
+use super::ray::{Departure, Ray};
+use crate::scene::{Geometry, Material, MaterialId, PrimitiveId};
+use glam::DVec3;
+
+/// A primitive with its numbers widened to f64.
+pub(super) struct Primitive {
+    pub(super) id: PrimitiveId,
+    pub(super) material: MaterialId,
+    pub(super) casts_shadow: bool,
+    pub(super) shape: Shape,
+}
+
+pub(super) enum Shape {
+    Sphere {
+        center: DVec3,
+        radius: f64,
+    },
+    Triangle {
+        vertices: [DVec3; 3],
+        normals: Option<Box<[DVec3; 3]>>,
+    },
+    Polygon {
+        vertices: Box<[DVec3]>,
+        /// Geometric, unit.
+        normal: DVec3,
+        normals: Option<Box<[DVec3]>>,
+    },
+}
+
+/// What a surface is like at a hit, seen from outside.
+pub(super) struct Surface {
+    pub(super) point: DVec3,
+    /// n_g, unit, outward.
+    pub(super) geometric_normal: DVec3,
+    /// n_s on the side of n_g, unit.
+    pub(super) shading_normal: DVec3,
+    /// More than rounding can have moved the point, and a neighbour's surface, along the normal.
+    pub(super) uncertainty: f64,
+}
+
+impl Surface {
+    /// Bound on the rounding of a hit point and of the test of a neighbouring face, as a share of the coordinates that
+    /// take part: about twenty operations of 2⁻⁵³ each, rounded up. Coordinates come as f32, so a scene cannot hold a
+    /// detail that is nearly as small.
+    pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 46) as f64;
+}
+
+impl Primitive {
+    /// Every primitive of a scene.
+    pub(super) fn all(geometry: &Geometry, materials: &[Material]) -> Vec<Self> {
+        let new = |id, material: MaterialId, shape| {
+            let casts_shadow = materials[material.0 as usize].casts_shadow;
+            Self { id, material, casts_shadow, shape }
+        };
+        let vertex = |index: u32| geometry.vertices[index as usize].as_dvec3();
+        let normal = |index: u32| geometry.normals[index as usize].as_dvec3();
+        let spheres = geometry.spheres.iter().map(|sphere| {
+            let shape = Shape::Sphere { center: sphere.center.as_dvec3(), radius: f64::from(sphere.radius) };
+            new(sphere.id, sphere.material, shape)
+        });
+        let triangles = geometry.triangles.iter().map(|triangle| {
+            let shape = Shape::Triangle {
+                vertices: triangle.vertices.map(vertex),
+                normals: triangle.normals.map(|normals| Box::new(normals.map(normal))),
+            };
+            new(triangle.id, triangle.material, shape)
+        });
+        let polygons = geometry.polygons.iter().map(|polygon| {
+            let vertices: Box<[DVec3]> = polygon.vertices.clone().map(vertex).collect();
+            let normals = polygon.normals.clone().map(|normals| normals.map(normal).collect());
+            let shape = Shape::Polygon { normal: newell_normal(&vertices), vertices, normals };
+            new(polygon.id, polygon.material, shape)
+        });
+        spheres.chain(triangles).chain(polygons).collect()
+    }
+
+    /// The smallest t > 0 at which the ray meets it; t is the ray's parameter, not a length.
+    pub(super) fn intersect(&self, ray: &Ray) -> Option<f64> {
+        let departure = ray.departure.filter(|departure| departure.from == self.id);
+        let t = match (&self.shape, departure) {
+            (Shape::Sphere { center, .. }, Some(Departure { inward: true, .. })) => far_side(ray, *center),
+            (_, Some(_)) => None,
+            (Shape::Sphere { center, radius }, None) => sphere(ray, *center, *radius),
+            (Shape::Triangle { vertices, .. }, None) => triangle(ray, vertices).map(|hit| hit.t),
+            (Shape::Polygon { vertices, normal, .. }, None) => polygon(ray, vertices, *normal),
+        };
+        t.filter(|&t| t > 0.0)
+    }
+
+    /// The surface at the hit that [`Self::intersect`] found.
+    pub(super) fn surface(&self, ray: &Ray, t: f64) -> Surface {
+        // Points are put back onto the primitive, since origin + t·direction is off it by the rounding of t.
+        match &self.shape {
+            Shape::Sphere { center, radius } => {
+                let normal = (ray.at(t) - *center).normalize();
+                Surface {
+                    point: *center + *radius * normal,
+                    geometric_normal: normal,
+                    shading_normal: normal,
+                    uncertainty: Surface::ROUNDING * (center.abs().max_element() + radius),
+                }
+            }
+            Shape::Triangle { vertices: [a, b, c], normals } => {
+                let weights = triangle(ray, &[*a, *b, *c]).map_or([1.0 / 3.0; 3], |hit| hit.barycentric);
+                let mean = |of: &[DVec3; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
+                let geometric_normal = (*b - *a).cross(*c - *a).normalize();
+                Surface {
+                    point: mean(&[*a, *b, *c]),
+                    geometric_normal,
+                    shading_normal: match normals {
+                        Some(normals) => on_side_of(geometric_normal, mean(normals)),
+                        None => geometric_normal,
+                    },
+                    uncertainty: Surface::ROUNDING * largest_coordinate(&[*a, *b, *c]),
+                }
+            }
+            Shape::Polygon { vertices, normal, normals } => {
+                let near = ray.at(t);
+                let point = near - (near - vertices[0]).dot(*normal) * *normal;
+                Surface {
+                    point,
+                    geometric_normal: *normal,
+                    shading_normal: match normals {
+                        Some(normals) => on_side_of(*normal, patch_normal(point, vertices, normals, *normal)),
+                        None => *normal,
+                    },
+                    uncertainty: Surface::ROUNDING * largest_coordinate(vertices),
+                }
+            }
+        }
+    }
+
+    /// Smallest and largest coordinates; rounded outward where they are computed.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        match &self.shape {
+            Shape::Sphere { center, radius } => (
+                (*center - DVec3::splat(*radius)).map(f64::next_down),
+                (*center + DVec3::splat(*radius)).map(f64::next_up),
+            ),
+            Shape::Triangle { vertices, .. } => bounds_of(vertices),
+            Shape::Polygon { vertices, .. } => bounds_of(vertices),
+        }
+    }
+}
+
+/// |o + t·d − c|² = r². The discriminant is taken as r² − l² with l the distance of the centre from the line, since
+/// b² − 4ac loses the radius of a sphere far away. Source: Hearn and Baker, "Computer Graphics with OpenGL", as used in
+/// Haines, Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
+fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Option<f64> {
+    let from_center = ray.origin - center;
+    let a = ray.direction.length_squared();
+    let closest_t = -from_center.dot(ray.direction) / a;
+    let closest = from_center + closest_t * ray.direction;
+    let half_chord_squared = radius * radius - closest.length_squared();
+    if half_chord_squared < 0.0 {
+        return None;
+    }
+    let half_chord = (half_chord_squared / a).sqrt();
+    // The root of smaller magnitude by the product of the roots, c/a, which keeps digits that a difference would lose.
+    let larger = closest_t + half_chord.copysign(closest_t);
+    if larger == 0.0 {
+        return None;
+    }
+    let distance = from_center.length();
+    let product = (distance - radius) * (distance + radius) / a;
+    let smaller = product / larger;
+    let (near, far) = if smaller < larger { (smaller, larger) } else { (larger, smaller) };
+    if near > 0.0 { Some(near) } else { Some(far) }
+}
+
+/// The second root for a ray that starts on the sphere: with |o − c| = r the quadratic has the roots 0 and this.
+fn far_side(ray: &Ray, center: DVec3) -> Option<f64> {
+    Some(-2.0 * (ray.origin - center).dot(ray.direction) / ray.direction.length_squared())
+}
+
+struct TriangleHit {
+    t: f64,
+    /// Weights of the three vertices; they sum to 1.
+    barycentric: [f64; 3],
+}
+
+/// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign; the areas are
+/// the barycentric weights, and t is the mean of the vertices' t by these weights. Edges and corners belong to it.
+fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
+    let [a, b, c] = vertices.map(|vertex| ray.project(vertex));
+    let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
+    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+        return None;
+    }
+    let area = u + v + w;
+    if area == 0.0 {
+        return None; // seen edge-on
+    }
+    let barycentric = [u / area, v / area, w / area];
+    let t = barycentric[0] * a.z + barycentric[1] * b.z + barycentric[2] * c.z;
+    Some(TriangleHit { t, barycentric })
+}
+
+/// Crossing-number test (Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994) of where the ray meets the
+/// polygon's plane.
+///
+/// The polygon is projected along the ray rather than along a coordinate axis. Both keep inside and outside, but axis
+/// by axis each face rounds its own hit point, and rays aimed at the edge of a closed solid get out between two faces;
+/// seen along the ray two faces share the very numbers of their common edge.
+fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f64> {
+    let mut inside = false;
+    let (mut low_t, mut high_t) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut from = ray.project(vertices[vertices.len() - 1]);
+    for &vertex in vertices {
+        let to = ray.project(vertex);
+        // Half open: a vertex level with the foot counts as above it, for every edge alike.
+        if (from.y < 0.0) != (to.y < 0.0) {
+            // From the lower to the upper end, so that both faces at an edge compute the same.
+            let (lower, upper) = if from.y < 0.0 { (from, to) } else { (to, from) };
+            if cross(lower, upper) > 0.0 {
+                inside = !inside;
+            }
+        }
+        (low_t, high_t) = (low_t.min(to.z), high_t.max(to.z));
+        from = to;
+    }
+    if !inside {
+        return None;
+    }
+    let slope = normal.dot(ray.direction);
+    if slope == 0.0 {
+        return None; // seen edge-on
+    }
+    let t = normal.dot(vertices[0] - ray.origin) / slope;
+    // A plane seen nearly edge-on is met anywhere; a point of the polygon is no nearer than its nearest vertex.
+    Some(t.clamp(low_t, high_t))
+}
+
+/// Twice the signed area of the triangle (foot of the ray, a, b). The two products are rounded before they are
+/// subtracted, so the sign is right or the result is 0, and swapping a and b only changes the sign.
+fn cross(a: DVec3, b: DVec3) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// Newell's normal, unit Σ p_k × p_k+1.
+fn newell_normal(vertices: &[DVec3]) -> DVec3 {
+    let origin = vertices[0];
+    let next = vertices.iter().cycle().skip(1);
+    let sum = vertices
+        .iter()
+        .zip(next)
+        .fold(DVec3::ZERO, |sum, (&from, &to)| sum + (from - origin).cross(to - origin));
+    sum.normalize()
+}
+
+/// The barycentric mean of a patch's normals over the triangle of its fan (0, k, k+1) that holds the point; where
+/// rounding or a concave outline leaves the point outside all of them, the one that it is least outside of.
+fn patch_normal(point: DVec3, vertices: &[DVec3], normals: &[DVec3], plane: DVec3) -> DVec3 {
+    let candidates = (1..vertices.len() - 1).filter_map(|k| {
+        let [a, b, c] = [vertices[0], vertices[k], vertices[k + 1]];
+        let area = plane.dot((b - a).cross(c - a));
+        let v = plane.dot((point - a).cross(c - a)) / area;
+        let w = plane.dot((b - a).cross(point - a)) / area;
+        let u = 1.0 - v - w;
+        let normal = u * normals[0] + v * normals[k] + w * normals[k + 1];
+        (area != 0.0).then(|| (u.min(v).min(w), normal))
+    });
+    candidates.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(plane, |(_, normal)| normal)
+}
+
+/// A vertex normal's mean, unit and on the side of n_g; n_g itself where the mean has no direction.
+fn on_side_of(geometric_normal: DVec3, mean: DVec3) -> DVec3 {
+    match mean.try_normalize() {
+        None => geometric_normal,
+        Some(normal) if normal.dot(geometric_normal) < 0.0 => -normal,
+        Some(normal) => normal,
+    }
+}
+
+fn largest_coordinate(points: &[DVec3]) -> f64 {
+    points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max)
+}
+
+fn bounds_of(points: &[DVec3]) -> (DVec3, DVec3) {
+    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    (low, high)
+}

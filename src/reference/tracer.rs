@@ -1,0 +1,206 @@
+//! The recursion: what a ray sees is the light at its hit, and shares of what its mirrored and refracted rays see.
+
+use super::camera::View;
+use super::hierarchy::{Hierarchy, Hit};
+use super::optics::{Boundary, beer, mirrored};
+use super::ray::{Departure, Ray};
+use super::shape::{Primitive, Surface};
+use crate::film::SamplePattern;
+use crate::rays::RayCounts;
+use crate::scene::{Light, Material, Scene};
+use glam::{DVec2, DVec3};
+
+/// A scene made ready for the f64 reference.
+pub struct Tracer<'a> {
+    scene: &'a Scene,
+    view: View,
+    hierarchy: Hierarchy,
+    samples: SamplePattern,
+}
+
+/// What a hit knows of itself.
+struct Shading<'a> {
+    material: &'a Material,
+    surface: Surface,
+    primitive: &'a Primitive,
+    /// Unit, along the ray.
+    direction: DVec3,
+    /// Whether the ray comes from outside.
+    entering: bool,
+    /// n_g and n_s turned to the side the ray comes from.
+    facing_geometric: DVec3,
+    facing_shading: DVec3,
+}
+
+/// A ray that a hit gives rise to, and the share of what it sees that the hit passes on.
+struct Child {
+    direction: DVec3,
+    share: DVec3,
+    /// Whether it stays on the side of the surface that the ray came from.
+    reflected: bool,
+}
+
+impl<'a> Tracer<'a> {
+    /// Builds the hierarchy.
+    #[must_use]
+    pub fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            view: View::new(&scene.camera, &scene.image),
+            hierarchy: Hierarchy::new(Primitive::all(&scene.geometry, &scene.materials)),
+            samples: SamplePattern::new(&scene.render),
+        }
+    }
+
+    /// The mean of a pixel's samples, linear RGB; x and y count from the full image's top left.
+    pub fn pixel(&self, x: u32, y: u32, counts: &mut RayCounts) -> [f64; 3] {
+        let row_from_bottom = self.scene.image.height - 1 - y;
+        let corner = DVec2::new(f64::from(x), f64::from(row_from_bottom));
+        let mut sum = DVec3::ZERO;
+        for s in 0..self.samples.count() {
+            let ray = self.view.ray(corner + DVec2::from(self.samples.position(x, y, s)));
+            counts.primary += 1;
+            sum += self.radiance(&ray, DVec3::ONE, 0, counts);
+        }
+        (sum / f64::from(self.samples.count())).to_array()
+    }
+
+    /// What arrives along a ray. Its weight is how much of that reaches the eye.
+    fn radiance(&self, ray: &Ray, weight: DVec3, depth: u32, counts: &mut RayCounts) -> DVec3 {
+        let Some(hit) = self.hierarchy.closest(ray) else {
+            return self.scene.image.background.as_dvec3();
+        };
+        let shading = self.shading(ray, &hit);
+        let attenuation = match shading.material.dielectric {
+            Some(dielectric) if !shading.entering => {
+                beer(dielectric.absorption.as_dvec3(), hit.t * ray.direction.length())
+            }
+            _ => DVec3::ONE,
+        };
+        let mut sum = self.local_light(&shading, counts);
+        for child in shading.children().into_iter().flatten() {
+            let child_weight = weight * attenuation * child.share;
+            if depth == self.scene.render.max_depth || !self.is_worth_tracing(child_weight) {
+                continue;
+            }
+            if child.reflected {
+                counts.reflect += 1;
+            } else {
+                counts.refract += 1;
+            }
+            let ray = shading.leave(child.reflected, |_| child.direction);
+            sum += child.share * self.radiance(&ray, child_weight, depth + 1, counts);
+        }
+        attenuation * sum
+    }
+
+    fn is_worth_tracing(&self, weight: DVec3) -> bool {
+        let largest = weight.max_element();
+        largest > 0.0 && largest >= f64::from(self.scene.render.min_weight)
+    }
+
+    fn shading<'s>(&'s self, ray: &Ray, hit: &Hit<'s>) -> Shading<'s> {
+        let surface = hit.primitive.surface(ray, hit.t);
+        let direction = ray.direction.normalize();
+        let entering = direction.dot(surface.geometric_normal) < 0.0;
+        let turn = if entering { 1.0 } else { -1.0 };
+        Shading {
+            material: &self.scene.materials[hit.primitive.material.0 as usize],
+            primitive: hit.primitive,
+            direction,
+            entering,
+            facing_geometric: turn * surface.geometric_normal,
+            facing_shading: turn * surface.shading_normal,
+            surface,
+        }
+    }
+
+    /// ka·Ia + Σ over visible lights of kd·Ii·(n·l) + ks·Ii·max(0, n·h)^α. Lambert's law, and Blinn, "Models of Light
+    /// Reflection for Computer Synthesized Pictures", 1977.
+    fn local_light(&self, shading: &Shading<'_>, counts: &mut RayCounts) -> DVec3 {
+        let material = shading.material;
+        let (diffuse, specular) = (material.diffuse.as_dvec3(), material.specular.as_dvec3());
+        let mut sum = material.ambient.as_dvec3() * self.scene.ambient.as_dvec3();
+        for light in &self.scene.lights {
+            let (to_light, intensity) = match *light {
+                Light::Point { position, intensity } => {
+                    (position.as_dvec3() - shading.surface.point, intensity)
+                }
+                Light::Directional { direction, intensity } => (-direction.as_dvec3(), intensity),
+            };
+            let intensity = intensity.as_dvec3();
+            let Some(l) = to_light.try_normalize() else { continue };
+            let cos_light = shading.facing_shading.dot(l);
+            if cos_light <= 0.0 || shading.facing_geometric.dot(l) <= 0.0 {
+                continue;
+            }
+            let half = (l - shading.direction).normalize();
+            let cos_half = shading.facing_shading.dot(half).max(0.0);
+            let reflected = diffuse * cos_light + specular * cos_half.powf(f64::from(material.shininess));
+            let arriving = intensity * reflected;
+            if arriving != DVec3::ZERO && self.is_visible(light, shading, counts) {
+                sum += arriving;
+            }
+        }
+        sum
+    }
+
+    fn is_visible(&self, light: &Light, shading: &Shading<'_>, counts: &mut RayCounts) -> bool {
+        counts.shadow += 1;
+        match *light {
+            Light::Point { position, .. } => {
+                let light = position.as_dvec3();
+                let ray = shading.leave(true, |origin| light - origin);
+                // Rounding must not put a surface that the light lies on in front of the light.
+                let coordinates = light.abs().max(ray.origin.abs()).max_element();
+                let uncertainty = Surface::ROUNDING * coordinates / ray.direction.length();
+                !self.hierarchy.occluded(&ray, 1.0 - uncertainty)
+            }
+            Light::Directional { direction, .. } => {
+                let ray = shading.leave(true, |_| -direction.as_dvec3());
+                !self.hierarchy.occluded(&ray, f64::INFINITY)
+            }
+        }
+    }
+}
+
+impl Shading<'_> {
+    /// The mirrored and the refracted ray, where there are such.
+    fn children(&self) -> [Option<Child>; 2] {
+        let mirror = self.material.mirror.as_dvec3();
+        let (reflected_share, refracted) = match &self.material.dielectric {
+            None => (mirror, None),
+            Some(dielectric) => {
+                let boundary =
+                    |normal| Boundary::new(self.direction, normal, f64::from(dielectric.ior), self.entering);
+                // A vertex normal that faces away from the ray has no angle of incidence.
+                let faces_ray = self.direction.dot(self.facing_shading) < 0.0;
+                let normal = if faces_ray { self.facing_shading } else { self.facing_geometric };
+                let at_normal = boundary(normal);
+                let (reflected_share, refracted_share) = at_normal.shares(mirror, dielectric, self.entering);
+                // A refracted ray that stays on this side of the true surface is made with the true normal.
+                let direction = at_normal
+                    .refracted(self.direction, normal)
+                    .filter(|direction| direction.dot(self.facing_geometric) < 0.0)
+                    .or_else(|| {
+                        boundary(self.facing_geometric).refracted(self.direction, self.facing_geometric)
+                    });
+                let child = |direction| Child { direction, share: refracted_share, reflected: false };
+                (reflected_share, direction.map(child))
+            }
+        };
+        let direction = Some(mirrored(self.direction, self.facing_shading))
+            .filter(|direction| direction.dot(self.facing_geometric) > 0.0)
+            .unwrap_or_else(|| mirrored(self.direction, self.facing_geometric));
+        [Some(Child { direction: direction.normalize(), share: reflected_share, reflected: true }), refracted]
+    }
+
+    /// A ray that leaves the surface, on the side the ray came from or on the other. It starts as far off the surface as
+    /// rounding could have moved either that or a neighbour that touches it here.
+    fn leave(&self, same_side: bool, direction_from: impl FnOnce(DVec3) -> DVec3) -> Ray {
+        let side = if same_side { self.facing_geometric } else { -self.facing_geometric };
+        let origin = self.surface.point + self.surface.uncertainty * side;
+        let inward = self.entering != same_side;
+        Ray::new(origin, direction_from(origin), Some(Departure { from: self.primitive.id, inward }))
+    }
+}
