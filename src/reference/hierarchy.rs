@@ -45,6 +45,13 @@ const STACK_SIZE: usize = DEPTH_OF_HALVING + 33;
 /// by this never hides a hit.
 const ROUNDING: f64 = 1.0 / (1_u64 << 47) as f64;
 
+/// How much two values of one t can differ by rounding. The worst case is a plane seen at a grazing angle; this allows
+/// for some hundred roundings.
+fn equal_t(ray: &Ray, t: f64) -> f64 {
+    const ROUNDING: f64 = 1.0 / (1_u64 << 44) as f64;
+    ROUNDING * (t + ray.origin.abs().max_element() / ray.direction.abs().max_element())
+}
+
 impl Hierarchy {
     pub(super) fn new(primitives: Vec<Primitive>) -> Self {
         let items = primitives.into_iter().map(|primitive| {
@@ -62,17 +69,24 @@ impl Hierarchy {
         Self { primitives: items.into_iter().map(|item| item.primitive).collect(), nodes, extent }
     }
 
-    /// The hit of smallest t > 0; of equal ones that of the smallest id.
+    /// The hit of smallest t > 0; of equal ones that of the smallest id. Surfaces that coincide are met at one t, but each
+    /// rounds it in its own way, so what differs by no more than rounding counts as equal.
     pub(super) fn closest(&self, ray: &Ray) -> Option<Hit<'_>> {
         let mut best: Option<Hit<'_>> = None;
+        let mut nearest_t = f64::INFINITY;
         self.visit(ray, f64::INFINITY, |primitive| {
             if let Some(t) = primitive.intersect(ray) {
-                let closer = best.is_none_or(|best| (t, primitive.id) < (best.t, best.primitive.id));
-                if closer {
+                let equal_within = equal_t(ray, t);
+                let first = best.is_none_or(|best| {
+                    t < nearest_t - equal_within
+                        || (t <= nearest_t + equal_within && primitive.id < best.primitive.id)
+                });
+                if first {
                     best = Some(Hit { t, primitive });
                 }
+                nearest_t = nearest_t.min(t);
             }
-            best.map_or(f64::INFINITY, |best| best.t)
+            if best.is_some() { nearest_t + equal_t(ray, nearest_t) } else { f64::INFINITY }
         });
         best
     }
@@ -285,13 +299,14 @@ mod tests {
         }
     }
 
-    /// Trying every primitive.
+    /// Trying every primitive: the smallest t, and the smallest id among those that equal it.
     fn closest_of_all(hierarchy: &Hierarchy, ray: &Ray) -> Option<(f64, u32)> {
-        let hits = hierarchy
-            .primitives
-            .iter()
-            .filter_map(|primitive| Some((primitive.intersect(ray)?, primitive.id.0)));
-        hits.min_by(|a, b| a.partial_cmp(b).expect("t is a number"))
+        let all = hierarchy.primitives.iter();
+        let hits: Vec<(u32, f64)> =
+            all.filter_map(|primitive| Some((primitive.id.0, primitive.intersect(ray)?))).collect();
+        let nearest = hits.iter().map(|&(_, t)| t).fold(f64::INFINITY, f64::min);
+        let equal = hits.into_iter().filter(|&(_, t)| t <= nearest + equal_t(ray, nearest));
+        equal.min_by_key(|&(id, _)| id).map(|(id, t)| (t, id))
     }
 
     proptest! {
