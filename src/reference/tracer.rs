@@ -128,18 +128,19 @@ impl<'a> Tracer<'a> {
                 }
                 Light::Directional { direction, intensity } => (-direction.as_dvec3(), intensity),
             };
-            let intensity = intensity.as_dvec3();
+            let (diffuse, specular) = (diffuse * intensity.as_dvec3(), specular * intensity.as_dvec3());
+            if diffuse == DVec3::ZERO && specular == DVec3::ZERO {
+                continue;
+            }
             let Some(l) = to_light.try_normalize() else { continue };
             let cos_light = shading.facing_shading.dot(l);
             if cos_light <= 0.0 || shading.facing_geometric.dot(l) <= 0.0 {
                 continue;
             }
-            let half = (l - shading.direction).normalize();
-            let cos_half = shading.facing_shading.dot(half).max(0.0);
-            let reflected = diffuse * cos_light + specular * cos_half.powf(f64::from(material.shininess));
-            let arriving = intensity * reflected;
-            if arriving != DVec3::ZERO && self.is_visible(light, shading, counts) {
-                sum += arriving;
+            if self.is_visible(light, shading, counts) {
+                let half = (l - shading.direction).normalize();
+                let cos_half = shading.facing_shading.dot(half).max(0.0);
+                sum += diffuse * cos_light + specular * cos_half.powf(f64::from(material.shininess));
             }
         }
         sum

@@ -1,0 +1,60 @@
+//! Scenes that the project did not write: Haines' SPD and the Stanford bunny, in the folder that WAVELANE_SCENES names.
+
+use crate::support::render_whole;
+use std::path::PathBuf;
+use wavelane::load::load;
+use wavelane::rays::RayCounts;
+
+/// A file of the folder; none, said out loud, where it is absent.
+fn file(name: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os("WAVELANE_SCENES") else {
+        eprintln!("skipped: {name}: WAVELANE_SCENES names no folder of scenes");
+        return None;
+    };
+    let path = PathBuf::from(folder).join(name);
+    if !path.is_file() {
+        eprintln!("skipped: {} is absent", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+#[test]
+fn the_spd_scenes_render() {
+    // Spheres, triangles and polygons are counted in the files by their first words.
+    for (name, spheres, triangles, polygons, lights) in [
+        ("balls", 7381, 0, 1, 3),
+        ("gears", 0, 0, 9345, 5),
+        ("mount", 4, 8192, 0, 1),
+        ("teapot", 0, 2256, 36, 2),
+        ("tetra", 0, 4096, 0, 1),
+        ("shells", 5761, 0, 0, 1),
+        ("sombrero", 0, 1922, 0, 1),
+    ] {
+        let Some(path) = file(&format!("spd/{name}.nff")) else { continue };
+        let scene = load(&path).unwrap_or_else(|error| panic!("{error}")).scene;
+        let geometry = &scene.geometry;
+        let counts =
+            (geometry.spheres.len(), geometry.triangles.len(), geometry.polygons.len(), scene.lights.len());
+        assert_eq!(counts, (spheres, triangles, polygons, lights), "{name}");
+        assert_eq!((scene.image.width, scene.image.height), (512, 512), "{name}");
+        let rendered = render_whole(&scene);
+        assert_eq!(rendered.rays.primary, 512 * 512, "{name}");
+        let background = scene.image.background.to_array();
+        let covered = rendered.image.pixels.iter().filter(|pixel| **pixel != background).count();
+        assert!((20_000..=262_144).contains(&covered), "{name} covers {covered} pixels");
+        assert!(rendered.image.pixels.iter().flatten().all(|channel| channel.is_finite()), "{name}");
+    }
+}
+
+#[test]
+fn the_bunny_is_framed_and_closed_where_it_is_seen() {
+    let Some(path) = file("bunny.obj") else { return };
+    let mut scene = load(&path).unwrap_or_else(|error| panic!("{error}")).scene;
+    (scene.image.width, scene.image.height) = (128, 128);
+    assert_eq!(scene.geometry.triangles.len(), 69_451);
+    let rendered = render_whole(&scene);
+    assert_eq!(rendered.rays, RayCounts { reflect: 0, refract: 0, ..rendered.rays });
+    let lit = rendered.image.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+    assert!(lit > 2000, "{lit} pixels are lit");
+}

@@ -1,0 +1,191 @@
+//! No holes and no acne, at any scale: what rounding must not do to a picture.
+
+use crate::support::{picture, render_whole, scene};
+use glam::Vec3;
+use wavelane::film::Image;
+use wavelane::scene::{Light, Scene};
+
+const STILL_LIFE: &str = r#"
+[image]
+size = [64, 48]
+background = [0.1, 0.2, 0.3]
+[camera]
+eye = [1.5, -4, 2]
+target = [0, 0, 0.5]
+up = [0, 0, 1]
+fov = 40
+[[light]]
+position = [3, -2, 4]
+[[light]]
+direction = [1, 0.5, -1]
+intensity = 0.3
+[material.matte]
+diffuse = 0.7
+[material.mirror]
+mirror = 0.8
+[material.glass]
+ior = 1.5
+[[sphere]]
+center = [0, 0, 0.5]
+radius = 0.5
+material = "glass"
+[[sphere]]
+center = [1, 0, 0.5]
+radius = 0.5
+material = "mirror"
+[[triangle]]
+vertices = [[-1, 1, 0], [-0.5, 0.25, 0], [-1, 0.5, 1]]
+material = "matte"
+[[polygon]]
+vertices = [[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]]
+material = "matte"
+"#;
+
+/// Multiplies every length of a scene by a power of two, which rounds nothing.
+fn scaled(mut scene: Scene, exponent: i32) -> Scene {
+    let factor = 2.0_f32.powi(exponent);
+    scene.camera.eye *= factor;
+    scene.camera.target *= factor;
+    for light in &mut scene.lights {
+        if let Light::Point { position, .. } = light {
+            *position *= factor;
+        }
+    }
+    for sphere in &mut scene.geometry.spheres {
+        sphere.center *= factor;
+        sphere.radius *= factor;
+    }
+    for vertex in &mut scene.geometry.vertices {
+        *vertex *= factor;
+    }
+    scene
+}
+
+#[test]
+fn a_scene_looks_the_same_at_every_scale() {
+    let expected = render_whole(&scene(STILL_LIFE)).image;
+    for exponent in [-30, -20, 20, 30] {
+        let image = render_whole(&scaled(scene(STILL_LIFE), exponent)).image;
+        assert_eq!(image, expected, "scaled by 2^{exponent}");
+    }
+}
+
+#[test]
+fn the_picture_does_not_depend_on_threads_or_crop() {
+    use std::sync::atomic::AtomicBool;
+    use wavelane::film::Region;
+    use wavelane::render::{RenderOptions, render};
+    let scene =
+        scene(&STILL_LIFE.replace("[image]", "[render]\nsampling = \"jittered\"\nsamples = 2\n[image]"));
+    let whole = render_whole(&scene).image;
+    let region = Region { x0: 13, y0: 7, x1: 50, y1: 41 };
+    for threads in [1, 2, 5] {
+        let options = RenderOptions { region, threads, on_progress: &|_| {}, stop: &AtomicBool::new(false) };
+        let part = render(&scene, &options).unwrap().image;
+        for y in 0..part.height {
+            for x in 0..part.width {
+                let expected = whole.pixels[whole.index(x + region.x0, y + region.y0)];
+                assert_eq!(part.pixels[part.index(x, y)], expected, "pixel ({x}, {y}) on {threads} threads");
+            }
+        }
+    }
+}
+
+/// A closed ball of triangles or of quadrilaterals, with its corners off any grid, around a centre.
+fn ball(center: Vec3, radius: f32, quads: bool) -> String {
+    let (rings, sectors) = (7, 12);
+    let point = |ring: i32, sector: i32| {
+        let (polar, azimuth) = (
+            std::f32::consts::PI * ring as f32 / rings as f32,
+            std::f32::consts::TAU * (sector % sectors) as f32 / sectors as f32,
+        );
+        let turned = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, 0.7)
+            * Vec3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
+        center + radius * turned
+    };
+    let listed = |points: &[Vec3]| {
+        let points: Vec<String> = points.iter().map(|point| format!("{:?}", point.to_array())).collect();
+        points.join(", ")
+    };
+    let mut toml = String::new();
+    for ring in 0..rings {
+        for sector in 0..sectors {
+            let corners = [
+                point(ring, sector),
+                point(ring + 1, sector),
+                point(ring + 1, sector + 1),
+                point(ring, sector + 1),
+            ];
+            if quads && ring > 0 && ring + 1 < rings {
+                toml += &format!("[[polygon]]\nvertices = [{}]\nmaterial = \"m\"\n", listed(&corners));
+                continue;
+            }
+            for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
+                // At the poles one of the two has no area and is left out.
+                toml += &format!(
+                    "[[triangle]]\nvertices = [{}]\nmaterial = \"m\"\n",
+                    listed(&[corners[a], corners[b], corners[c]])
+                );
+            }
+        }
+    }
+    toml
+}
+
+/// Nothing of the background is seen from inside a closed ball, though every ray of a fine grid passes close by edges.
+#[test]
+fn no_ray_leaves_a_closed_mesh() {
+    for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-6), (Vec3::new(1000.0, -2000.0, 500.0), 1.0)]
+    {
+        for quads in [false, true] {
+            let [x, y, z] = center.to_array();
+            for target in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.2], [0.3, 0.4, 1.0]] {
+                let target = center + radius * Vec3::from(target);
+                let image = picture(&format!(
+                    "[image]\nsize = [200, 200]\nbackground = 1\n[camera]\neye = [{x}, {y}, {z}]\ntarget = {:?}\nup = [0.1, 0.9, 0.3]\nfov = 100\n[material.m]\n{}",
+                    target.to_array(),
+                    ball(center, radius, quads)
+                ));
+                let holes = image.pixels.iter().filter(|pixel| **pixel != [0.0; 3]).count();
+                assert_eq!(holes, 0, "ball at {center} of radius {radius}, quads {quads}");
+            }
+        }
+    }
+}
+
+/// On a convex solid every point that faces the light is lit: a dark one has shadowed itself or its neighbour.
+#[test]
+fn no_face_of_a_convex_solid_shadows_itself_or_its_neighbour() {
+    for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-6), (Vec3::new(1000.0, -2000.0, 500.0), 1.0)]
+    {
+        for quads in [false, true] {
+            let eye = (center + radius * Vec3::new(1.0, 3.0, 2.0)).to_array();
+            let image = picture(&format!(
+                "[image]\nsize = [240, 240]\nbackground = 1\n[camera]\neye = {eye:?}\ntarget = {:?}\nup = [0, 0, 1]\nfov = 32\n\
+                 [[light]]\nposition = {eye:?}\n[material.m]\ndiffuse = 1\n{}",
+                center.to_array(),
+                ball(center, radius, quads)
+            ));
+            // The light is at the eye, so whatever is seen faces the light.
+            let dark = image.pixels.iter().filter(|pixel| **pixel == [0.0; 3]).count();
+            assert_eq!(dark, 0, "ball at {center} of radius {radius}, quads {quads}");
+            assert!(image.pixels.iter().any(|pixel| pixel[0] < 1.0), "the ball is in view");
+        }
+    }
+}
+
+/// A light that lies in a surface lights what is before that surface, without speckles.
+#[test]
+fn a_light_on_a_surface_is_not_hidden_by_it() {
+    let toml = |light: &str| {
+        format!(
+            "[image]\nsize = [60, 60]\n[camera]\nkind = \"orthographic\"\neye = [0, 0, 2.9]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nheight = 4\n\
+             {light}[material.m]\ndiffuse = 1\n\
+             [[polygon]]\nvertices = [[-9, -9, 0.1], [9, -9, 0.3], [9, 9, 0.3], [-9, 9, 0.1]]\nmaterial = \"m\"\n\
+             [[polygon]]\nvertices = [[-9, -9, 3], [9, -9, 3], [9, 9, 3], [-9, 9, 3]]\nmaterial = \"m\"\n"
+        )
+    };
+    let lit = |image: &Image| image.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+    assert_eq!(lit(&picture(&toml("[[light]]\nposition = [0.7, 0.3, 3]\n"))), 3600);
+    assert_eq!(lit(&picture(&toml("[[light]]\nposition = [0.7, 0.3, 3.1]\n"))), 0, "behind it, it is hidden");
+}
