@@ -1,19 +1,27 @@
-//! Ctrl-C: the first asks the work to stop, a second does not wait for it.
+//! Ctrl-C ends the program with exit code 130: at once, or where a render is under way when that has stopped.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The exit code of an interrupted program.
 const INTERRUPTED: i32 = 130;
 
-/// Is true once the user has asked to stop.
-pub(super) fn flag() -> &'static AtomicBool {
-    static STOP: AtomicBool = AtomicBool::new(false);
+/// Whether somebody looks at `STOP`.
+static IS_WATCHED: AtomicBool = AtomicBool::new(false);
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Takes Ctrl-C over from the system.
+pub(super) fn catch() {
     let handler = || {
-        if STOP.swap(true, Ordering::Relaxed) {
+        // A second Ctrl-C does not wait for the first.
+        if !IS_WATCHED.load(Ordering::Relaxed) || STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(INTERRUPTED);
         }
     };
     // Without a handler Ctrl-C still ends the program, and no file is ever half there.
     let _ = ctrlc::set_handler(handler);
+}
+
+/// Is true once the user has asked to stop; from now on it is the caller who stops.
+pub(super) fn watch() -> &'static AtomicBool {
+    IS_WATCHED.store(true, Ordering::Relaxed);
     &STOP
 }

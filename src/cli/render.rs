@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         region,
         threads: arguments.threads.map_or(0, usize::from),
         on_progress: &|done| progress.report(done),
-        stop: interrupt::flag(),
+        stop: interrupt::watch(),
     };
     let rendered = render(scene, &options);
     progress.finish();

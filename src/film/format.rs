@@ -109,12 +109,14 @@ pub fn check_writable(path: &Path) -> Result<(), FilmError> {
 /// # Errors
 /// A file that cannot be opened, or is not a picture in the format of its name.
 pub fn read(path: &Path) -> Result<Image, FilmError> {
-    let format = Format::of(path)?;
+    let content = |why: String| FilmError::Content { path: path.to_owned(), why };
+    let format =
+        Format::of(path).map_err(|_| content("a picture to read ends in .png, .exr or .npy".into()))?;
     let bytes = std::fs::read(path).map_err(|why| FilmError::Open { path: path.to_owned(), why })?;
     match format {
         Format::Png => png::read(&bytes),
         Format::Exr => exr::read(&bytes),
         Format::Npy => npy::read(&bytes),
     }
-    .map_err(|why| FilmError::Content { path: path.to_owned(), why })
+    .map_err(content)
 }

@@ -82,12 +82,12 @@ mod tests {
         let n = 8;
         let pattern = pattern(Sampling::Jittered, n);
         for (x, y) in [(0, 0), (3, 1), (4000, 123)] {
-            let mut seen = vec![0; (n * n) as usize];
-            for s in 0..pattern.count() {
-                let cell = pattern.position(x, y, s).map(|share| (share * f64::from(n)).floor() as usize);
-                seen[cell[1] * n as usize + cell[0]] += 1;
+            let samples: Vec<_> = (0..pattern.count()).map(|s| pattern.position(x, y, s)).collect();
+            for cell in (0..n * n).map(|cell| [cell % n, cell / n].map(f64::from)) {
+                let is_inside =
+                    |[xi, eta]: &&[f64; 2]| [xi * f64::from(n), eta * f64::from(n)].map(f64::floor) == cell;
+                assert_eq!(samples.iter().filter(is_inside).count(), 1, "cell {cell:?} of pixel ({x}, {y})");
             }
-            assert!(seen.iter().all(|&count| count == 1), "cells of pixel ({x}, {y}) hold {seen:?}");
         }
     }
 

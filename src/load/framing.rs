@@ -1,7 +1,7 @@
 //! The camera and the light of a file that brings none: from in front, above and to the right, and all of it in view.
 
 use super::number::rounded_3;
-use crate::scene::{Camera, Geometry, Light, Projection, Rgb};
+use crate::scene::{Camera, Light, Projection, Rgb};
 use glam::{DVec3, Vec3};
 
 /// Where to look from and what to light it with.
@@ -10,9 +10,9 @@ pub(super) struct Framing {
     pub(super) light: Light,
 }
 
-/// Frames everything; where there is nothing, a unit cube around the origin.
-pub(super) fn framed(geometry: &Geometry) -> Framing {
-    let (low, high) = geometry.bounds().unwrap_or((DVec3::splat(-0.5), DVec3::splat(0.5)));
+/// Frames what lies between two corners; where there is nothing, a unit cube around the origin.
+pub(super) fn framed(bounds: Option<(DVec3, DVec3)>) -> Framing {
+    let (low, high) = bounds.unwrap_or((DVec3::splat(-0.5), DVec3::splat(0.5)));
     let center = (low + high) / 2.0;
     // A single point has no extent to step back by.
     let extent = Some((high - low).length()).filter(|&extent| extent > 0.0).unwrap_or(1.0);

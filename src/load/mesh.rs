@@ -3,7 +3,7 @@
 use super::error::{InputError, Place, Warnings};
 use super::framing::framed;
 use super::number::{self, rounded_3};
-use super::{obj, ply};
+use super::{extension, obj, ply};
 use crate::math::sin_cos_degrees;
 use crate::scene::{
     Added, Geometry, ImageSettings, Material, MaterialId, RenderSettings, Rgb, Scene, polygon_normal,
@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct Mesh {
     path: PathBuf,
     pub(super) positions: Vec<DVec3>,
+    /// Smallest and largest coordinates of all vertices of the file, those that no face uses included.
+    pub(super) bounds: Option<(DVec3, DVec3)>,
     pub(super) normals: Vec<DVec3>,
     triangles: Vec<MeshTriangle>,
     /// The file's own.
@@ -61,26 +63,51 @@ impl Transform {
     }
 }
 
-/// Reads a mesh file; `wants_materials` says whether its own materials will be used, and so have to be found.
-pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) -> Result<Mesh, InputError> {
-    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-    match extension.as_deref() {
-        Some("obj") => obj::read(path, wants_materials, warnings),
-        Some("ply") => ply::read(path),
-        _ => Err(InputError::refused(path, Place::File, "a mesh file ends in .obj or .ply")),
+/// The formats of mesh files.
+#[derive(Clone, Copy)]
+pub(super) enum MeshFormat {
+    Obj,
+    Ply,
+}
+
+impl MeshFormat {
+    /// The format that a name's ending asks for.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        match extension(path).as_deref() {
+            Some("obj") => Some(Self::Obj),
+            Some("ply") => Some(Self::Ply),
+            _ => None,
+        }
+    }
+
+    /// Reads a file; `wants_materials` says whether its own materials will be used, and so have to be found.
+    pub(super) fn read(
+        self,
+        path: &Path,
+        wants_materials: bool,
+        warnings: &mut Warnings,
+    ) -> Result<Mesh, InputError> {
+        match self {
+            Self::Obj => obj::read(path, wants_materials, warnings),
+            Self::Ply => ply::read(path),
+        }
     }
 }
 
 /// A scene of one mesh, with a camera and a light that show all of it, in grey where it brings no material.
-pub(super) fn load_alone(path: &Path, warnings: &mut Warnings) -> Result<Scene, InputError> {
-    let mut mesh = read(path, true, warnings)?;
+pub(super) fn load_alone(
+    path: &Path,
+    format: MeshFormat,
+    warnings: &mut Warnings,
+) -> Result<Scene, InputError> {
+    let mut mesh = format.read(path, true, warnings)?;
     let mut materials = vec![Material::grey()];
     let grey = MaterialId(0);
     materials.append(&mut mesh.materials);
     let choice = MaterialChoice::Own { first: MaterialId(1), otherwise: Some(grey) };
     let mut geometry = Geometry::default();
     mesh.add_to(&mut geometry, &Transform::IDENTITY, choice, warnings)?;
-    let framing = framed(&geometry);
+    let framing = framed(mesh.bounds);
     Ok(Scene {
         image: ImageSettings::default(),
         render: RenderSettings::default(),
@@ -111,12 +138,19 @@ impl Mesh {
         Self {
             path: path.to_owned(),
             positions: Vec::new(),
+            bounds: None,
             normals: Vec::new(),
             triangles: Vec::new(),
             materials: Vec::new(),
             faces: 0,
             earcut: Earcut::new(),
         }
+    }
+
+    /// Widens the bounds.
+    pub(super) fn extend_bounds(&mut self, position: DVec3) {
+        let (low, high) = self.bounds.unwrap_or((position, position));
+        self.bounds = Some((low.min(position), high.max(position)));
     }
 
     /// Adds the triangles of a face; normals, where there are any, stand beside the corners. Indices must be in range.
@@ -126,8 +160,8 @@ impl Mesh {
         let face = self.faces;
         let cut = if is_convex(&points) { fan(points.len()) } else { ears(&mut self.earcut, &points) };
         self.triangles.extend(cut.into_iter().map(|places| MeshTriangle {
-            corners: places.map(|place| corners[place as usize]),
-            normals: normals.map(|normals| places.map(|place| normals[place as usize])),
+            corners: places.map(|place| corners[place]),
+            normals: normals.map(|normals| places.map(|place| normals[place])),
             material,
             face,
         }));
@@ -196,19 +230,19 @@ fn is_convex(points: &[DVec3]) -> bool {
 }
 
 /// (0, k, k+1), the order that other tracers count in.
-fn fan(count: usize) -> Vec<[u32; 3]> {
-    (1..count as u32 - 1).map(|k| [0, k, k + 1]).collect()
+fn fan(count: usize) -> Vec<[usize; 3]> {
+    (1..count - 1).map(|k| [0, k, k + 1]).collect()
 }
 
 /// A concave face by cutting off ears, seen along the axis in which its normal is largest; a fan where that finds none.
-fn ears(earcut: &mut Earcut<f64>, points: &[DVec3]) -> Vec<[u32; 3]> {
+fn ears(earcut: &mut Earcut<f64>, points: &[DVec3]) -> Vec<[usize; 3]> {
     let normal = polygon_normal(points).unwrap_or(DVec3::Z);
     let dropped = normal.abs().max_position();
     let (mut x, mut y) = ((dropped + 1) % 3, (dropped + 2) % 3);
     if normal[dropped] < 0.0 {
         (x, y) = (y, x);
     }
-    let mut places: Vec<u32> = Vec::new();
+    let mut places: Vec<usize> = Vec::new();
     earcut.earcut(points.iter().map(|point| [point[x], point[y]]), &[], &mut places);
     if places.is_empty() {
         return fan(points.len());
@@ -220,9 +254,8 @@ fn ears(earcut: &mut Earcut<f64>, points: &[DVec3]) -> Vec<[u32; 3]> {
 }
 
 /// A triangle in the face's own sense of rotation.
-fn upright([a, b, c]: [u32; 3], points: &[DVec3], normal: DVec3) -> [u32; 3] {
-    let at = |index: u32| points[index as usize];
-    let turns_over = (at(b) - at(a)).cross(at(c) - at(a)).dot(normal) < 0.0;
+fn upright([a, b, c]: [usize; 3], points: &[DVec3], normal: DVec3) -> [usize; 3] {
+    let turns_over = (points[b] - points[a]).cross(points[c] - points[a]).dot(normal) < 0.0;
     if turns_over { [a, c, b] } else { [a, b, c] }
 }
 
@@ -233,7 +266,7 @@ mod tests {
     fn mesh_of(points: &[[f64; 3]]) -> Mesh {
         let mut mesh = Mesh::new(Path::new("test.obj"));
         mesh.positions = points.iter().copied().map(DVec3::from).collect();
-        let corners: Vec<u32> = (0..points.len() as u32).collect();
+        let corners: Vec<u32> = (0..).take(points.len()).collect();
         mesh.add_face(&corners, None, None);
         mesh
     }

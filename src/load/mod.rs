@@ -22,6 +22,7 @@ pub use error::{Cause, InputError, Place, Warning};
 
 use crate::scene::Scene;
 use error::Warnings;
+use mesh::MeshFormat;
 use std::path::Path;
 
 /// A scene, and what its user should know about it.
@@ -39,19 +40,20 @@ pub struct Loaded {
 /// The first thing in the file, or in a file that it names, that cannot be opened, parsed or accepted.
 pub fn load(path: &Path) -> Result<Loaded, InputError> {
     const KNOWN: &str = "a scene file ends in .toml, .nff, .obj or .ply";
-    let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    let refused = |message: String| Err(InputError::refused(path, Place::File, message));
     let mut warnings = Warnings::default();
-    let scene = match extension.as_deref() {
-        Some("toml") => toml::load(path, &mut warnings),
-        Some("nff") => nff::load(path, &mut warnings),
-        Some("obj" | "ply") => mesh::load_alone(path, &mut warnings),
-        _ if path.is_dir() => {
-            Err(InputError::refused(path, Place::File, format!("this is a folder; {KNOWN}")))
-        }
-        Some(other) => {
-            Err(InputError::refused(path, Place::File, format!("unknown ending `.{other}`; {KNOWN}")))
-        }
-        None => Err(InputError::refused(path, Place::File, format!("the name has no ending; {KNOWN}"))),
+    let scene = match (extension(path).as_deref(), MeshFormat::of(path)) {
+        (Some("toml"), _) => toml::load(path, &mut warnings),
+        (Some("nff"), _) => nff::load(path, &mut warnings),
+        (_, Some(format)) => mesh::load_alone(path, format, &mut warnings),
+        _ if path.is_dir() => refused(format!("this is a folder; {KNOWN}")),
+        (Some(other), _) => refused(format!("unknown ending `.{other}`; {KNOWN}")),
+        (None, _) => refused(format!("the name has no ending; {KNOWN}")),
     }?;
     Ok(Loaded { scene, warnings: warnings.into_list() })
+}
+
+/// A name's ending in lower case, without the dot.
+fn extension(path: &Path) -> Option<String> {
+    Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }

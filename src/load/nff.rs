@@ -83,7 +83,7 @@ impl Reader<'_> {
                 let color = if self.a_number_follows() { Some(self.vector("light r g b")?) } else { None };
                 self.lights.push((position, color));
             }
-            "f" => self.fill(offset)?,
+            "f" => self.fill()?,
             "s" => self.sphere(offset)?,
             "p" => self.polygon(offset, false)?,
             "pp" => self.polygon(offset, true)?,
@@ -114,31 +114,30 @@ impl Reader<'_> {
         Ok(rounded_3(self.words.vector(what)?))
     }
 
+    fn not_negative(&mut self, what: &str) -> Result<f64, InputError> {
+        let offset = self.words.peek().map_or(0, |word| word.offset);
+        match self.words.number(what)? {
+            value if value < 0.0 => Err(self
+                .text
+                .error(offset, format!("this number is {value}; it must not be negative ({what})"))),
+            value => Ok(value),
+        }
+    }
+
     fn a_number_follows(&self) -> bool {
         self.words.peek().is_some_and(|word| word.text.parse::<f64>().is_ok())
     }
 
-    fn fill(&mut self, offset: usize) -> Result<(), InputError> {
-        let color = self.words.vector("fill r g b")?;
-        let mut number = |what: &str| self.words.number(what);
-        let (kd, ks, shine) = (number("fill Kd")?, number("fill Ks")?, number("fill Shine")?);
-        let (transmittance, ior) = (number("fill T")?, number("fill index of refraction")?);
-        let named = [
-            ("r", color.x),
-            ("g", color.y),
-            ("b", color.z),
-            ("Kd", kd),
-            ("Ks", ks),
-            ("Shine", shine),
-            ("T", transmittance),
-            ("index of refraction", ior),
-        ];
-        for (name, value) in named {
-            if value < 0.0 {
-                let message = format!("{name} of this fill is {value}; it must not be negative");
-                return Err(self.text.error(offset, message));
-            }
-        }
+    fn fill(&mut self) -> Result<(), InputError> {
+        let color = DVec3::new(
+            self.not_negative("fill r")?,
+            self.not_negative("fill g")?,
+            self.not_negative("fill b")?,
+        );
+        let (kd, ks) = (self.not_negative("fill Kd")?, self.not_negative("fill Ks")?);
+        let shine = self.not_negative("fill Shine")?;
+        let transmittance = self.not_negative("fill T")?;
+        let ior = self.not_negative("fill index of refraction")?;
         let dielectric = (transmittance > 0.0).then(|| Dielectric {
             ior: if ior == 0.0 { 1.0 } else { rounded(ior) },
             absorption: Rgb::ZERO,
@@ -209,7 +208,7 @@ impl Reader<'_> {
 
     fn into_scene(self) -> Result<Scene, InputError> {
         let camera = match self.view.offset.or(self.view.from.map(|(_, offset)| offset)) {
-            None => framed(&self.geometry).camera,
+            None => framed(self.geometry.bounds()).camera,
             Some(offset) => self.camera(offset)?,
         };
         let grey = 1.0 / (self.lights.len() as f64).sqrt();

@@ -6,9 +6,9 @@ use glam::{DVec3, Vec3};
 /// Refuses what no scene can use.
 pub(super) fn check(value: f64) -> Result<f64, String> {
     if value.is_nan() {
-        Err("NaN is not a number that a scene can use".to_owned())
+        Err("a number must be finite; this one is NaN".to_owned())
     } else if value.is_infinite() {
-        Err("a number must be finite and at most 1e18 in magnitude; this one is infinite".to_owned())
+        Err("a number must be finite; this one is infinite".to_owned())
     } else if value.abs() > MAX_COORDINATE {
         Err(format!("a number must be at most 1e18 in magnitude; this one is {value:e}"))
     } else {
@@ -41,6 +41,6 @@ pub(super) fn rounded_3(value: DVec3) -> Vec3 {
 /// A word as a message can show it.
 pub(super) fn shortened(word: &str) -> String {
     const LONGEST: usize = 32;
-    let shown: String = word.chars().take(LONGEST).flat_map(char::escape_default).collect();
+    let shown: String = word.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if word.chars().nth(LONGEST).is_some() { format!("{shown}…") } else { shown }
 }

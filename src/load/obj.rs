@@ -2,7 +2,7 @@
 //!
 //! The library says neither where nor what it trips over, makes normals up for corners without one, panics on some short
 //! lines and knows no continued lines. So a first pass walks the logical lines, refuses what is wrong with its place, and
-//! hands on plain lines only: vertices, normals, faces of `v` or `v//vn`, and material names.
+//! hands on plain lines only: all vertices and normals, then faces of `v` or `v//vn` and material names.
 
 use super::error::{InputError, Place, Warnings};
 use super::mesh::Mesh;
@@ -11,19 +11,21 @@ use super::number;
 use super::suggest::did_you_mean;
 use super::text::Text;
 use glam::DVec3;
-use std::fmt::Write;
 use std::path::Path;
 
 pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) -> Result<Mesh, InputError> {
     let text = Text::read(path)?;
     let mut plain = Plain {
         text: &text,
+        mesh: Mesh::new(path),
         wants_materials,
         library: Library::default(),
-        lines: String::new(),
+        vertex_lines: String::new(),
+        face_lines: String::new(),
         vertices: 0,
         normals: 0,
         faces_have_normals: Vec::new(),
+        ahead: Vec::new(),
     };
     for line in logical_lines(&text.content) {
         plain.add(&line, warnings)?;
@@ -35,8 +37,8 @@ pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) 
             "the file has no faces (`f`), so there is nothing to see",
         ));
     }
-    let (lines, faces_have_normals) = (plain.lines, plain.faces_have_normals);
-    parse(path, &lines, plain.library, &faces_have_normals)
+    plain.check_ahead()?;
+    plain.parse(path)
 }
 
 /// A line with its continuations joined and its comment cut off.
@@ -82,15 +84,45 @@ pub(super) fn logical_lines(content: &str) -> Vec<LogicalLine<'_>> {
     lines
 }
 
+/// A corner that refers to a vertex or normal which the file does not have yet.
+struct Ahead {
+    offset: usize,
+    face: usize,
+    element: Element,
+    index: i64,
+}
+
+#[derive(Clone, Copy)]
+enum Element {
+    Vertex,
+    Normal,
+}
+
+fn out_of_range(element: Element, index: i64, count: i64) -> String {
+    let (one, many) = match element {
+        Element::Vertex => ("vertex", "vertices"),
+        Element::Normal => ("normal", "normals"),
+    };
+    match index {
+        0 => format!("{one} 0 is out of range; indices count from 1"),
+        _ => format!("{one} {index} is out of range; there are {count} {many}"),
+    }
+}
+
 /// What the library gets to read.
 struct Plain<'a> {
     text: &'a Text,
+    /// Still without its faces.
+    mesh: Mesh,
     wants_materials: bool,
     library: Library,
-    lines: String,
+    vertex_lines: String,
+    face_lines: String,
     vertices: i64,
     normals: i64,
     faces_have_normals: Vec<bool>,
+    /// Corners that refer to lines still to come.
+    ahead: Vec<Ahead>,
 }
 
 impl Plain<'_> {
@@ -99,13 +131,20 @@ impl Plain<'_> {
         let error = |message: String| self.text.error(offset, message);
         match keyword {
             "v" => {
-                // After x, y, z a file may have w, or a colour, which is not used here.
+                // After x, y, z a file may have w, or a colour.
                 if !matches!(arguments.len(), 3 | 4 | 6 | 7) {
                     let message =
                         format!("a vertex (`v`) has three coordinates; this one has {}", arguments.len());
                     return Err(error(message));
                 }
-                self.numbers("v", arguments)?;
+                // Of these only the weight w has a say in where the vertex is.
+                let kept = if arguments.len() == 4 { 4 } else { 3 };
+                let numbers = self.numbers("v", arguments, kept)?;
+                let weight = if kept == 4 { numbers[3] } else { 1.0 };
+                if weight == 0.0 {
+                    return Err(self.text.error(arguments[3].1, "the weight w of a vertex must not be 0"));
+                }
+                self.mesh.extend_bounds(DVec3::from_slice(&numbers) / weight);
                 self.vertices += 1;
             }
             "vn" => {
@@ -115,7 +154,7 @@ impl Plain<'_> {
                         arguments.len()
                     )));
                 }
-                self.numbers("vn", arguments)?;
+                self.numbers("vn", arguments, 3)?;
                 self.normals += 1;
             }
             "f" => self.face(offset, arguments)?,
@@ -129,11 +168,11 @@ impl Plain<'_> {
                         "unknown material `{name}`; no material library (`mtllib`) before this line has it{meant}"
                     )));
                 }
-                self.line(format_args!("usemtl {name}"));
+                self.face_lines += &format!("usemtl {name}\n");
             }
             // Texture coordinates, names of objects and groups, smoothing and the choice of materials made elsewhere.
-            "vt" | "vp" | "o" | "g" | "s" | "mg" | "mtllib" | "usemtl" | "bevel" | "c_interp"
-            | "d_interp" | "lod" => {}
+            "vt" | "vp" | "o" | "g" | "s" | "mg" | "maplib" | "usemap" | "mtllib" | "usemtl" | "bevel"
+            | "c_interp" | "d_interp" | "lod" => {}
             "shadow_obj" | "trace_obj" => {}
             "l" | "p" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm" | "trim"
             | "hole" | "scrv" | "sp" | "end" | "con" | "ctech" | "stech" | "call" | "csh" => {
@@ -150,26 +189,20 @@ impl Plain<'_> {
         Ok(())
     }
 
-    fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.lines, "{line}");
-    }
-
-    /// Checks the numbers of a vertex or normal and hands on x, y, z and, where there is one, w.
-    fn numbers(&mut self, keyword: &str, words: &[(&str, usize)]) -> Result<(), InputError> {
-        let mut line = keyword.to_owned();
-        for (place, &(word, offset)) in words.iter().enumerate() {
-            let value = number::parse(word).map_err(|message| self.text.error(offset, message))?;
-            if words.len() == 4 && place == 3 && value == 0.0 {
-                return Err(self.text.error(offset, "the weight w of a vertex must not be 0"));
-            }
-            if place < 3 || words.len() == 4 {
-                line += " ";
-                line += word;
-            }
-        }
-        self.line(format_args!("{line}"));
-        Ok(())
+    /// Checks numbers and hands on the first of them.
+    fn numbers(
+        &mut self,
+        keyword: &str,
+        words: &[(&str, usize)],
+        kept: usize,
+    ) -> Result<Vec<f64>, InputError> {
+        let number = |&(word, offset): &(&str, usize)| {
+            number::parse(word).map_err(|message| self.text.error(offset, message))
+        };
+        let numbers = words.iter().map(number).collect::<Result<Vec<f64>, _>>()?;
+        let kept: Vec<&str> = words.iter().take(kept).map(|(word, _)| *word).collect();
+        self.vertex_lines += &format!("{keyword} {}\n", kept.join(" "));
+        Ok(numbers)
     }
 
     fn face(&mut self, offset: usize, corners: &[(&str, usize)]) -> Result<(), InputError> {
@@ -187,15 +220,33 @@ impl Plain<'_> {
                 None => line += &format!(" {vertex}"),
             }
         }
-        self.line(format_args!("{line}"));
+        self.face_lines += &line;
+        self.face_lines += "\n";
         self.faces_have_normals.push(have_normals);
         Ok(())
     }
 
+    fn count(&self, element: Element) -> i64 {
+        match element {
+            Element::Vertex => self.vertices,
+            Element::Normal => self.normals,
+        }
+    }
+
+    /// Refuses the first corner whose vertex or normal never came.
+    fn check_ahead(&self) -> Result<(), InputError> {
+        let missing = self.ahead.iter().find(|ahead| ahead.index > self.count(ahead.element));
+        missing.map_or(Ok(()), |&Ahead { offset, face, element, index }| {
+            let message = out_of_range(element, index, self.count(element));
+            Err(self.text.error(offset, format!("face {face}: {message}")))
+        })
+    }
+
     /// Vertex and normal of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1.
-    fn corner(&self, word: &str, offset: usize) -> Result<(i64, Option<i64>), InputError> {
+    fn corner(&mut self, word: &str, offset: usize) -> Result<(i64, Option<i64>), InputError> {
         let face = self.faces_have_normals.len() + 1;
-        let error = |message: String| self.text.error(offset, format!("face {face}: {message}"));
+        let text = self.text;
+        let error = |message: String| text.error(offset, format!("face {face}: {message}"));
         let malformed = || {
             error(format!(
                 "expected a corner like 3, 3/1, 3//2 or 3/1/2, found `{}`",
@@ -208,18 +259,21 @@ impl Plain<'_> {
             [vertex, _, normal] => (vertex, Some(normal)),
             _ => return Err(malformed()),
         };
-        let index = |word: &str, what: &str, count: i64| {
+        let mut index = |word: &str, element: Element| {
             let index: i64 = word.parse().map_err(|_| malformed())?;
+            let count = self.count(element);
             // Negative indices count back from the latest element.
             let from_1 = if index < 0 { count + 1 + index } else { index };
-            if (1..=count).contains(&from_1) {
-                Ok(from_1)
-            } else {
-                Err(error(format!("{what} {index} is out of range; the lines before this one have {count}")))
+            if from_1 < 1 {
+                return Err(error(out_of_range(element, index, count)));
             }
+            if from_1 > count {
+                self.ahead.push(Ahead { offset, face, element, index });
+            }
+            Ok(from_1)
         };
-        let vertex = index(vertex, "vertex", self.vertices)?;
-        let normal = normal.map(|normal| index(normal, "normal", self.normals)).transpose()?;
+        let vertex = index(vertex, Element::Vertex)?;
+        let normal = normal.map(|normal| index(normal, Element::Normal)).transpose()?;
         Ok((vertex, normal))
     }
 
@@ -251,54 +305,51 @@ impl Plain<'_> {
         }
         Ok(())
     }
-}
 
-fn parse(
-    path: &Path,
-    lines: &str,
-    library: Library,
-    faces_have_normals: &[bool],
-) -> Result<Mesh, InputError> {
-    let refused = |why: &dyn std::fmt::Display| {
-        InputError::refused(path, Place::File, format!("this is not an OBJ file that can be read: {why}"))
-    };
-    let options =
-        tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
-    let (for_library, materials) = library.into_parts();
-    // The library asks for materials where it meets a `mtllib`; they are all known here, before the first line.
-    let lines = format!("mtllib all\n{lines}");
-    let (models, _) = tobj::load_obj_buf(&mut lines.as_bytes(), &options, |_| Ok(for_library.clone()))
-        .map_err(|error| refused(&error))?;
-
-    let mut mesh = Mesh::new(path);
-    mesh.materials = materials;
-    let mut faces_have_normals = faces_have_normals.iter();
-    for model in models {
-        let part = model.mesh;
-        let (first_position, first_normal) = (mesh.positions.len(), mesh.normals.len());
-        let vectors = |flat: &[f64]| -> Vec<DVec3> { flat.chunks_exact(3).map(DVec3::from_slice).collect() };
-        mesh.positions.extend(vectors(&part.positions));
-        mesh.normals.extend(vectors(&part.normals));
-        let material = part.material_id.and_then(|index| u32::try_from(index).ok());
-        let offset_by = |indices: &[u32], first: usize| -> Option<Vec<u32>> {
-            let first = u32::try_from(first).ok()?;
-            indices.iter().map(|index| index.checked_add(first)).collect()
+    /// Lets the library read the plain lines.
+    fn parse(self, path: &Path) -> Result<Mesh, InputError> {
+        let refused = |why: &dyn std::fmt::Display| {
+            InputError::refused(path, Place::File, format!("this is not an OBJ file that can be read: {why}"))
         };
-        let mut start = 0;
-        let triangles = vec![3; if part.face_arities.is_empty() { part.indices.len() / 3 } else { 0 }];
-        for &size in part.face_arities.iter().chain(&triangles) {
-            let run = start..start + size as usize;
-            start = run.end;
-            let too_many = || refused(&"it has more vertices than 32 bits count");
-            let corners = offset_by(&part.indices[run.clone()], first_position).ok_or_else(too_many)?;
-            // Where the file gives a face no normals, those that the library makes up are left aside.
-            let has_normals = faces_have_normals.next().copied().unwrap_or(false);
-            let normals = match has_normals {
-                true => Some(offset_by(&part.normal_indices[run], first_normal).ok_or_else(too_many)?),
-                false => None,
+        let options =
+            tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
+        let (for_library, materials) = self.library.into_parts();
+        // The library asks for materials where it meets a `mtllib`; they are all known here, before the first line.
+        let lines = format!("mtllib all\n{}{}", self.vertex_lines, self.face_lines);
+        let (models, _) = tobj::load_obj_buf(&mut lines.as_bytes(), &options, |_| Ok(for_library.clone()))
+            .map_err(|error| refused(&error))?;
+
+        let mut mesh = self.mesh;
+        mesh.materials = materials;
+        let mut faces_have_normals = self.faces_have_normals.into_iter();
+        for model in models {
+            let part = model.mesh;
+            let (first_position, first_normal) = (mesh.positions.len(), mesh.normals.len());
+            let vectors =
+                |flat: &[f64]| -> Vec<DVec3> { flat.chunks_exact(3).map(DVec3::from_slice).collect() };
+            mesh.positions.extend(vectors(&part.positions));
+            mesh.normals.extend(vectors(&part.normals));
+            let material = part.material_id.and_then(|index| u32::try_from(index).ok());
+            let offset_by = |indices: &[u32], first: usize| -> Option<Vec<u32>> {
+                let first = u32::try_from(first).ok()?;
+                indices.iter().map(|index| index.checked_add(first)).collect()
             };
-            mesh.add_face(&corners, normals.as_deref(), material);
+            let mut start = 0;
+            let triangles = vec![3; if part.face_arities.is_empty() { part.indices.len() / 3 } else { 0 }];
+            for &size in part.face_arities.iter().chain(&triangles) {
+                let run = start..start + size as usize;
+                start = run.end;
+                let too_many = || refused(&"it has more vertices than 32 bits count");
+                let corners = offset_by(&part.indices[run.clone()], first_position).ok_or_else(too_many)?;
+                // Where the file gives a face no normals, those that the library makes up are left aside.
+                let has_normals = faces_have_normals.next().unwrap_or(false);
+                let normals = match has_normals {
+                    true => Some(offset_by(&part.normal_indices[run], first_normal).ok_or_else(too_many)?),
+                    false => None,
+                };
+                mesh.add_face(&corners, normals.as_deref(), material);
+            }
         }
+        Ok(mesh)
     }
-    Ok(mesh)
 }

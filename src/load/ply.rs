@@ -56,6 +56,7 @@ fn mesh(path: &Path, vertices: &[Vertex], faces: &[Face], has_normals: bool) -> 
         numbers.copied().try_for_each(|value| number::check(value).map(drop)).map_err(|message| {
             InputError::refused(path, Place::Element(format!("vertex {}", index + 1)), message)
         })?;
+        mesh.extend_bounds(DVec3::from(vertex.position));
         mesh.positions.push(DVec3::from(vertex.position));
         mesh.normals.push(DVec3::from(vertex.normal));
     }
@@ -106,12 +107,20 @@ fn check_element(path: &Path, name: &str, element: &ElementDef) -> Result<(), In
 const INDEX_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 fn refused(path: &Path, error: &ParseError) -> InputError {
+    // The library's messages go on over several lines, repeat what they read and name states of its grammar.
     let whole = error.to_string();
-    // The library's messages go on over several lines and repeat the line that it read.
-    let mut message = whole.lines().next().unwrap_or_default().trim_end_matches('.');
+    let mut message = whole.lines().next().unwrap_or_default().trim_end_matches('.').to_owned();
+    for (theirs, ours) in [
+        ("Couldn't read element line", "this line does not hold the numbers that the header announces"),
+        ("Couldn't parse line", "this line is no line of a PLY header"),
+    ] {
+        if message.contains(theirs) {
+            message = ours.to_owned();
+        }
+    }
     let place = match error.line() {
         Some(line) => {
-            message = message.strip_prefix(&format!("Line {line}: ")).unwrap_or(message);
+            message = message.replacen(&format!("Line {line}: "), "", 1);
             Place::At { line, column: 1 }
         }
         None => Place::File,

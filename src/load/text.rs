@@ -56,7 +56,8 @@ impl Text {
 
     /// Line and column of a byte offset.
     pub(super) fn place(&self, offset: usize) -> Place {
-        let before = &self.content[..self.content.floor_char_boundary(offset)];
+        let start = (0..=offset.min(self.content.len())).rev().find(|&at| self.content.is_char_boundary(at));
+        let before = &self.content[..start.unwrap_or(0)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Place::At {
             line: before.bytes().filter(|&byte| byte == b'\n').count() + 1,

@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     fn image(pixels: &[[f32; 3]]) -> Image {
-        Image { width: pixels.len() as u32, height: 1, pixels: pixels.to_vec() }
+        Image { width: u32::try_from(pixels.len()).unwrap(), height: 1, pixels: pixels.to_vec() }
     }
 
     #[test]

@@ -181,7 +181,7 @@ fn bad_input_is_3_and_leaves_no_file() {
     place.folder.write("scene.toml", SCENE.replace("radius = 1", "radius = -1"));
     let output = place.render("a.png", &[]);
     assert_exit(&output, 3);
-    let expected = format!("{}:15:10: the radius is -1; it must be greater than 0\n", place.at("scene.toml"));
+    let expected = format!("{}:16:10: the radius is -1; it must be greater than 0\n", place.at("scene.toml"));
     assert_eq!((stdout(&output), stderr(&output)), (String::new(), expected));
     assert_eq!(place.folder.names(), ["scene.toml"]);
     assert_exit(&wavelane(&["check", &place.at("scene.toml")]), 3);
@@ -213,7 +213,7 @@ fn check_says_what_it_found_and_warns_on_stderr() {
     assert_eq!(
         stderr(&output),
         format!(
-            "{path}:17:1: warning: this shape has no area and is left out (2 in all; this is the first)\n"
+            "{path}:18:1: warning: this shape has no area and is left out (2 in all; this is the first)\n"
         )
     );
 }
@@ -226,7 +226,7 @@ fn pixels(values: &[f32]) -> Image {
 fn diff_measures_and_judges_only_by_a_limit() {
     let place = Workplace::new();
     let write = |name: &str, values: &[f32]| {
-        film::write(&pixels(values), &place.folder.file(name), BitDepth::Eight).unwrap()
+        film::write(&pixels(values), &place.folder.file(name), BitDepth::Eight).unwrap();
     };
     write("a.npy", &[0.0, 0.5, 1.0, 2.0]);
     write("b.exr", &[0.0, 0.5, 1.25, 2.0]);

@@ -92,6 +92,8 @@ const SQUARE: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\n";
 #[test]
 fn obj_indices_may_be_negative_and_lines_continued() {
     let plain = scene(&[("a.obj", &format!("{SQUARE}vn 0 0 1\nf 1//1 2//1 3//1 4//1\n"))]);
+    let ahead = scene(&[("a.obj", &format!("f 1//1 2//1 3//1 4//1\n{SQUARE}vn 0 0 1\n"))]);
+    assert_eq!(ahead, plain, "vertices may come after the face that uses them");
     for faces in ["f -4//-1 -3//-1 -2//-1 -1//-1\n", "f 1/1/1 2/1/1\\\n 3/1/1 \\\r\n4/7/1 # a square\n"] {
         let scene = scene(&[("a.obj", &format!("{SQUARE}vt 0 0\nvn 0 0 1\n{faces}"))]);
         assert_eq!(scene, plain, "{faces}");
@@ -123,7 +125,7 @@ fn a_mesh_alone_is_framed_lit_and_grey() {
     // The diagonal of the bounding box is √8.
     let extent = 8.0_f32.sqrt();
     let near = |found: Vec3, expected: Vec3| {
-        assert!((found - expected).length() < 1e-6, "{found} is not {expected}")
+        assert!((found - expected).length() < 1e-6, "{found} is not {expected}");
     };
     near(scene.camera.eye, Vec3::new(0.45, 0.35, 0.75) * extent);
     near(scene.camera.target, Vec3::ZERO);

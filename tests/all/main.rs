@@ -1,4 +1,11 @@
 //! All integration tests in one program, so that it is linked once.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::cast_possible_truncation,
+    clippy::print_stderr,
+    reason = "a test may end where it finds what it does not expect, and says out loud what it skips"
+)]
 
 mod bad_input;
 mod command_line;

@@ -9,29 +9,29 @@ use wavelane::render::{RenderOptions, Rendered, render};
 use wavelane::scene::Scene;
 
 /// A folder that goes away with the value.
-pub struct Folder(tempfile::TempDir);
+pub(crate) struct Folder(tempfile::TempDir);
 
 impl Folder {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
 
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.0.path()
     }
 
-    pub fn file(&self, name: &str) -> PathBuf {
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.file(name);
         std::fs::write(&path, content).unwrap();
         path
     }
 
     /// Names of all files, sorted.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.path()).unwrap();
         let mut names: Vec<String> =
             entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -41,12 +41,12 @@ impl Folder {
 }
 
 /// The scene of a TOML text.
-pub fn scene(toml: &str) -> Scene {
+pub(crate) fn scene(toml: &str) -> Scene {
     let folder = Folder::new();
     load(&folder.write("scene.toml", toml)).unwrap_or_else(|error| panic!("{error}\nin\n{toml}")).scene
 }
 
-pub fn render_whole(scene: &Scene) -> Rendered {
+pub(crate) fn render_whole(scene: &Scene) -> Rendered {
     let options = RenderOptions {
         region: Region::whole(scene.image.width, scene.image.height),
         threads: 0,
@@ -57,26 +57,26 @@ pub fn render_whole(scene: &Scene) -> Rendered {
 }
 
 /// The picture of a TOML text.
-pub fn picture(toml: &str) -> Image {
+pub(crate) fn picture(toml: &str) -> Image {
     render_whole(&scene(toml)).image
 }
 
 /// The only pixel of a TOML text's picture.
-pub fn pixel(toml: &str) -> [f32; 3] {
+pub(crate) fn pixel(toml: &str) -> [f32; 3] {
     let image = picture(toml);
     assert_eq!((image.width, image.height), (1, 1));
     image.pixels[0]
 }
 
 /// A camera of one pixel that looks from `eye` along the line to `target`, with orthographic rays.
-pub fn one_ray(eye: [f64; 3], target: [f64; 3]) -> String {
+pub(crate) fn one_ray(eye: [f64; 3], target: [f64; 3]) -> String {
     format!(
         "[image]\nsize = [1, 1]\n[camera]\nkind = \"orthographic\"\neye = {eye:?}\ntarget = {target:?}\nup = [0.123, 0.987, 0.456]\nheight = 1e-9\n"
     )
 }
 
 #[track_caller]
-pub fn assert_close(found: [f32; 3], expected: [f64; 3], tolerance: f64) {
+pub(crate) fn assert_close(found: [f32; 3], expected: [f64; 3], tolerance: f64) {
     for channel in 0..3 {
         let difference = (f64::from(found[channel]) - expected[channel]).abs();
         assert!(difference <= tolerance, "found {found:?}, expected {expected:?}");
@@ -84,19 +84,19 @@ pub fn assert_close(found: [f32; 3], expected: [f64; 3], tolerance: f64) {
 }
 
 /// Runs the program.
-pub fn wavelane(arguments: &[&str]) -> Output {
+pub(crate) fn wavelane(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_wavelane")).args(arguments).output().unwrap()
 }
 
-pub fn stdout(output: &Output) -> String {
+pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-pub fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// The project's root.
-pub fn root() -> &'static Path {
+pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }

@@ -33,7 +33,7 @@ pub(super) fn load(path: &Path, warnings: &mut Warnings) -> Result<Scene, InputE
     let geometry = shapes::read(&root, &mut materials, warnings)?;
     let camera = match root.get("camera") {
         Some(camera) => camera::read(&camera)?,
-        None => framed(&geometry).camera,
+        None => framed(geometry.bounds()).camera,
     };
     Ok(Scene { image, render, camera, ambient, lights, materials: materials.list, geometry })
 }
@@ -50,7 +50,7 @@ fn image(root: &Table<'_>) -> Result<ImageSettings, InputError> {
             );
         };
         let (width, height) =
-            (width.integer(0..=u64::from(u32::MAX))?, height.integer(0..=u64::from(u32::MAX))?);
+            (width.integer(1..=u64::from(u32::MAX))?, height.integer(1..=u64::from(u32::MAX))?);
         (image.width, image.height) =
             ImageSettings::check_size(width, height).map_err(|message| size.error(message))?;
     }

@@ -110,7 +110,8 @@ impl<'a> Value<'a> {
     fn wrong_type(&self, wanted: &str) -> InputError {
         let found = match self.value.get_ref() {
             DeValue::String(_) => "a string",
-            DeValue::Integer(_) | DeValue::Float(_) => "a number",
+            DeValue::Integer(_) => "a whole number",
+            DeValue::Float(_) => "a decimal number",
             DeValue::Boolean(_) => "a truth value",
             DeValue::Datetime(_) => "a date",
             DeValue::Array(_) => "a list",

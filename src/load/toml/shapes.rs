@@ -3,7 +3,7 @@
 use super::material::Materials;
 use super::reader::{Table, Value};
 use crate::load::error::{InputError, Warnings};
-use crate::load::mesh::{self, MaterialChoice, Transform};
+use crate::load::mesh::{MaterialChoice, MeshFormat, Transform};
 use crate::scene::Geometry;
 use glam::{DVec3, Vec3};
 
@@ -105,12 +105,14 @@ fn mesh(
         None => None,
         Some(value) => Some(materials.named(&value)?),
     };
+    let format = MeshFormat::of(&path)
+        .ok_or_else(|| file.error(format!("a mesh file ends in .obj or .ply; \"{name}\" does not")))?;
     if let Err(why) = std::fs::metadata(&path) {
         return Err(file.error(format!(
             "the mesh \"{name}\" cannot be opened: {why}; its name is taken relative to the folder of this file"
         )));
     }
-    let mut mesh = mesh::read(&path, material.is_none(), warnings)?;
+    let mut mesh = format.read(&path, material.is_none(), warnings)?;
     let choice = match material {
         Some(material) => MaterialChoice::Given(material),
         None if mesh.materials.is_empty() => {
