@@ -8,7 +8,7 @@
 //!
 //! - [`load`] reads a scene file and ends in a [`scene::Scene`] or in an error that names file, line and column;
 //! - [`scene`] is plain data in the user's units;
-//! - [`reference`] traces it in scalar f64, from the textbook: the truth that faster engines are checked against;
+//! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that faster engines are checked against;
 //! - [`film`] holds sample positions, pixels and picture files;
 //! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
 //!

@@ -95,7 +95,7 @@ pub fn write(image: &Image, path: &Path, depth: BitDepth) -> Result<(), FilmErro
     .map_err(|why| FilmError::Write { path: path.to_owned(), why })
 }
 
-/// Says early whether [`write`] could put a file there.
+/// Says early whether [`write()`] could put a file there.
 ///
 /// # Errors
 /// An unknown ending, or a place where no file can be made.
