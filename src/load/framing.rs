@@ -27,3 +27,9 @@ pub(super) fn framed(bounds: Option<(DVec3, DVec3)>) -> Framing {
         light: Light::Point { position: at([-1.0, 2.0, 1.5]), intensity: Rgb::ONE },
     }
 }
+
+/// Bounds that also hold a point.
+pub(super) fn widened(bounds: Option<(DVec3, DVec3)>, point: DVec3) -> Option<(DVec3, DVec3)> {
+    let (low, high) = bounds.unwrap_or((point, point));
+    Some((low.min(point), high.max(point)))
+}

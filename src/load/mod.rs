@@ -2,17 +2,14 @@
 //!
 //! - `text`: a file as text, with lines and columns; `words`: its words; `number`: what a number may be
 //! - `toml`: the project's own format; `nff`: Haines' Neutral File Format
-//! - `obj`, `mtl`, `ply`: meshes; `mesh`: their faces, transforms and materials on the way into the scene
+//! - `mesh`: OBJ with MTL, and PLY, alone or as parts of a scene
 //! - `framing`: the camera and the light of a file that has none
 
 mod error;
 mod framing;
 mod mesh;
-mod mtl;
 mod nff;
 mod number;
-mod obj;
-mod ply;
 mod suggest;
 mod text;
 mod toml;

@@ -1,9 +1,10 @@
 //! PLY, ascii and binary, read by `ply-rs-bw`.
 
-use super::error::{InputError, Place};
-use super::mesh::Mesh;
-use super::number;
-use super::text::read_bytes;
+use super::Mesh;
+use crate::load::error::{InputError, Place};
+use crate::load::framing::widened;
+use crate::load::number;
+use crate::load::text::read_bytes;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType};
@@ -56,7 +57,7 @@ fn mesh(path: &Path, vertices: &[Vertex], faces: &[Face], has_normals: bool) -> 
         numbers.copied().try_for_each(|value| number::check(value).map(drop)).map_err(|message| {
             InputError::refused(path, Place::Element(format!("vertex {}", index + 1)), message)
         })?;
-        mesh.extend_bounds(DVec3::from(vertex.position));
+        mesh.bounds = widened(mesh.bounds, DVec3::from(vertex.position));
         mesh.positions.push(DVec3::from(vertex.position));
         mesh.normals.push(DVec3::from(vertex.normal));
     }

@@ -1,25 +1,39 @@
-//! Wavefront OBJ, read by `tobj`.
+//! The pass over an OBJ file that finds what the library would trip over.
 //!
 //! The library says neither where nor what it trips over, makes normals up for corners without one, panics on some short
-//! lines and knows no continued lines. So a first pass walks the logical lines, refuses what is wrong with its place, and
+//! lines and knows no continued lines. So this pass walks the logical lines, refuses what is wrong with its place, and
 //! hands on plain lines only: all vertices and normals, then faces of `v` or `v//vn` and material names.
 
-use super::error::{InputError, Place, Warnings};
-use super::mesh::Mesh;
+use super::lines::{LogicalLine, logical_lines};
 use super::mtl::{self, Library};
-use super::number;
-use super::suggest::did_you_mean;
-use super::text::Text;
+use crate::load::error::{InputError, Warnings};
+use crate::load::framing::widened;
+use crate::load::number;
+use crate::load::suggest::did_you_mean;
+use crate::load::text::Text;
 use glam::DVec3;
-use std::path::Path;
 
-pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) -> Result<Mesh, InputError> {
-    let text = Text::read(path)?;
-    let mut plain = Plain {
-        text: &text,
-        mesh: Mesh::new(path),
+/// What the library gets to read, and what it would not say.
+pub(super) struct Checked {
+    /// Without material libraries, which have been read into `library`.
+    pub(super) lines: String,
+    pub(super) library: Library,
+    /// Whether each face names a normal at each of its corners.
+    pub(super) faces_have_normals: Vec<bool>,
+    /// Of all vertices, used or not.
+    pub(super) bounds: Option<(DVec3, DVec3)>,
+}
+
+pub(super) fn check(
+    text: &Text,
+    wants_materials: bool,
+    warnings: &mut Warnings,
+) -> Result<Checked, InputError> {
+    let mut pass = Pass {
+        text,
         wants_materials,
         library: Library::default(),
+        bounds: None,
         vertex_lines: String::new(),
         face_lines: String::new(),
         vertices: 0,
@@ -28,60 +42,15 @@ pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) 
         ahead: Vec::new(),
     };
     for line in logical_lines(&text.content) {
-        plain.add(&line, warnings)?;
+        pass.add(&line, warnings)?;
     }
-    if plain.faces_have_normals.is_empty() {
-        return Err(InputError::refused(
-            path,
-            Place::File,
-            "the file has no faces (`f`), so there is nothing to see",
-        ));
-    }
-    plain.check_ahead()?;
-    plain.parse(path)
-}
-
-/// A line with its continuations joined and its comment cut off.
-pub(super) struct LogicalLine<'a> {
-    pub(super) words: Vec<(&'a str, usize)>,
-    /// Where the line, or what comes after its first word, ends.
-    end: usize,
-}
-
-impl<'a> LogicalLine<'a> {
-    /// What follows the first word, which may hold spaces.
-    pub(super) fn rest(&self, content: &'a str) -> &'a str {
-        self.words.get(1).map_or("", |&(_, offset)| content[offset..self.end].trim_end())
-    }
-}
-
-/// The lines of an OBJ or MTL file that say something.
-pub(super) fn logical_lines(content: &str) -> Vec<LogicalLine<'_>> {
-    let mut lines: Vec<LogicalLine<'_>> = Vec::new();
-    let mut continued = false;
-    let mut offset = 0;
-    for raw in content.split_inclusive('\n') {
-        let line = raw.trim_end();
-        let code = line.split('#').next().unwrap_or_default();
-        let (code, continues) = match code.trim_end().strip_suffix('\\') {
-            Some(code) => (code, true),
-            None => (code, false),
-        };
-        let words =
-            code.split_whitespace().map(|word| (word, offset + (word.as_ptr().addr() - raw.as_ptr().addr())));
-        let end = offset + code.len();
-        match lines.last_mut() {
-            Some(last) if continued => {
-                last.words.extend(words);
-                last.end = end;
-            }
-            _ => lines.push(LogicalLine { words: words.collect(), end }),
-        }
-        continued = continues;
-        offset += raw.len();
-    }
-    lines.retain(|line| !line.words.is_empty());
-    lines
+    pass.check_ahead()?;
+    Ok(Checked {
+        lines: pass.vertex_lines + &pass.face_lines,
+        library: pass.library,
+        faces_have_normals: pass.faces_have_normals,
+        bounds: pass.bounds,
+    })
 }
 
 /// A corner that refers to a vertex or normal which the file does not have yet.
@@ -109,13 +78,12 @@ fn out_of_range(element: Element, index: i64, count: i64) -> String {
     }
 }
 
-/// What the library gets to read.
-struct Plain<'a> {
+/// The pass under way.
+struct Pass<'a> {
     text: &'a Text,
-    /// Still without its faces.
-    mesh: Mesh,
     wants_materials: bool,
     library: Library,
+    bounds: Option<(DVec3, DVec3)>,
     vertex_lines: String,
     face_lines: String,
     vertices: i64,
@@ -125,7 +93,7 @@ struct Plain<'a> {
     ahead: Vec<Ahead>,
 }
 
-impl Plain<'_> {
+impl Pass<'_> {
     fn add(&mut self, line: &LogicalLine<'_>, warnings: &mut Warnings) -> Result<(), InputError> {
         let Some((&(keyword, offset), arguments)) = line.words.split_first() else { return Ok(()) };
         let error = |message: String| self.text.error(offset, message);
@@ -144,7 +112,7 @@ impl Plain<'_> {
                 if weight == 0.0 {
                     return Err(self.text.error(arguments[3].1, "the weight w of a vertex must not be 0"));
                 }
-                self.mesh.extend_bounds(DVec3::from_slice(&numbers) / weight);
+                self.bounds = widened(self.bounds, DVec3::from_slice(&numbers) / weight);
                 self.vertices += 1;
             }
             "vn" => {
@@ -304,52 +272,5 @@ impl Plain<'_> {
             mtl::read(&path, &mut self.library, warnings)?;
         }
         Ok(())
-    }
-
-    /// Lets the library read the plain lines.
-    fn parse(self, path: &Path) -> Result<Mesh, InputError> {
-        let refused = |why: &dyn std::fmt::Display| {
-            InputError::refused(path, Place::File, format!("this is not an OBJ file that can be read: {why}"))
-        };
-        let options =
-            tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
-        let (for_library, materials) = self.library.into_parts();
-        // The library asks for materials where it meets a `mtllib`; they are all known here, before the first line.
-        let lines = format!("mtllib all\n{}{}", self.vertex_lines, self.face_lines);
-        let (models, _) = tobj::load_obj_buf(&mut lines.as_bytes(), &options, |_| Ok(for_library.clone()))
-            .map_err(|error| refused(&error))?;
-
-        let mut mesh = self.mesh;
-        mesh.materials = materials;
-        let mut faces_have_normals = self.faces_have_normals.into_iter();
-        for model in models {
-            let part = model.mesh;
-            let (first_position, first_normal) = (mesh.positions.len(), mesh.normals.len());
-            let vectors =
-                |flat: &[f64]| -> Vec<DVec3> { flat.chunks_exact(3).map(DVec3::from_slice).collect() };
-            mesh.positions.extend(vectors(&part.positions));
-            mesh.normals.extend(vectors(&part.normals));
-            let material = part.material_id.and_then(|index| u32::try_from(index).ok());
-            let offset_by = |indices: &[u32], first: usize| -> Option<Vec<u32>> {
-                let first = u32::try_from(first).ok()?;
-                indices.iter().map(|index| index.checked_add(first)).collect()
-            };
-            let mut start = 0;
-            let triangles = vec![3; if part.face_arities.is_empty() { part.indices.len() / 3 } else { 0 }];
-            for &size in part.face_arities.iter().chain(&triangles) {
-                let run = start..start + size as usize;
-                start = run.end;
-                let too_many = || refused(&"it has more vertices than 32 bits count");
-                let corners = offset_by(&part.indices[run.clone()], first_position).ok_or_else(too_many)?;
-                // Where the file gives a face no normals, those that the library makes up are left aside.
-                let has_normals = faces_have_normals.next().unwrap_or(false);
-                let normals = match has_normals {
-                    true => Some(offset_by(&part.normal_indices[run], first_normal).ok_or_else(too_many)?),
-                    false => None,
-                };
-                mesh.add_face(&corners, normals.as_deref(), material);
-            }
-        }
-        Ok(mesh)
     }
 }

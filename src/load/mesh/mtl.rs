@@ -1,9 +1,9 @@
 //! MTL material libraries, read by `tobj` after a first pass has checked their lines.
 
-use super::error::{InputError, Place, Warnings};
-use super::number::{self, rounded, rounded_3};
-use super::obj::{LogicalLine, logical_lines};
-use super::text::Text;
+use super::lines::{LogicalLine, logical_lines};
+use crate::load::error::{InputError, Place, Warnings};
+use crate::load::number::{self, rounded, rounded_3};
+use crate::load::text::Text;
 use crate::scene::{Dielectric, Fresnel, Material, Rgb};
 use glam::DVec3;
 use std::collections::HashMap;
