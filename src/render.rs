@@ -72,7 +72,7 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
 
     let start = Instant::now();
-    let tracer = Tracer::new(scene);
+    let tracer = Tracer::new(scene, options.stop);
     let prepare_seconds = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
@@ -91,11 +91,11 @@ fn trace(tracer: &Tracer<'_>, options: &RenderOptions<'_>, image: &mut Image) ->
     let counted = runs.map(|(run, pixels)| {
         let mut counts = RayCounts::default();
         for (index, pixel) in (run * RUN..).zip(pixels.iter_mut()) {
-            if options.stop.load(Ordering::Relaxed) {
-                return None;
-            }
             let (x, y) = (region.x0 + low_32(index % width), region.y0 + low_32(index / width));
             *pixel = tracer.pixel(x, y, &mut counts).map(rounded);
+        }
+        if options.stop.load(Ordering::Relaxed) {
+            return None; // these pixels may be black
         }
         let pixels = pixels.len() as u64;
         (options.on_progress)(done.fetch_add(pixels, Ordering::Relaxed) + pixels);

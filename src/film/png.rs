@@ -7,18 +7,19 @@ use std::io::{self, Write};
 
 pub(super) fn write(image: &Image, depth: BitDepth, writer: &mut impl Write) -> io::Result<()> {
     let channels = image.pixels.as_flattened();
-    let (bytes, color) = match depth {
+    let encoder = PngEncoder::new_with_quality(writer, CompressionType::Default, FilterType::Adaptive);
+    let (width, height) = (image.width, image.height);
+    let written = match depth {
         BitDepth::Eight => {
-            (channels.iter().map(|&channel| srgb::code_8(channel)).collect(), ExtendedColorType::Rgb8)
+            let codes: Vec<u8> = channels.iter().map(|&channel| srgb::code_8(channel)).collect();
+            encoder.write_image(&codes, width, height, ExtendedColorType::Rgb8)
         }
         BitDepth::Sixteen => {
             let codes: Vec<u16> = channels.iter().map(|&channel| srgb::code_16(channel)).collect();
-            (bytemuck::cast_slice(&codes).to_vec(), ExtendedColorType::Rgb16)
+            encoder.write_image(bytemuck::cast_slice(&codes), width, height, ExtendedColorType::Rgb16)
         }
     };
-    PngEncoder::new_with_quality(writer, CompressionType::Default, FilterType::Adaptive)
-        .write_image(&bytes, image.width, image.height, color)
-        .map_err(io::Error::other)
+    written.map_err(io::Error::other)
 }
 
 /// sRGB values 0–1; an alpha channel is left aside, grey is spread over the channels.

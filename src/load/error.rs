@@ -94,12 +94,14 @@ pub(super) struct Warnings {
 
 impl Warnings {
     /// Warns, or counts one more where the same file was warned of the same kind before.
-    pub(super) fn add(&mut self, kind: &str, path: &Path, place: Place, message: impl FnOnce() -> String) {
+    /// Only the first of a kind is asked for its place and message: finding a line takes a look at all lines before it.
+    pub(super) fn add(&mut self, kind: &str, path: &Path, first: impl FnOnce() -> (Place, String)) {
         let same = |(known, warning): &&mut (String, Warning)| known == kind && warning.path == path;
         match self.list.iter_mut().find(same) {
             Some((_, warning)) => warning.count += 1,
             None => {
-                let warning = Warning { path: path.to_owned(), place, message: message(), count: 1 };
+                let (place, message) = first();
+                let warning = Warning { path: path.to_owned(), place, message, count: 1 };
                 self.list.push((kind.to_owned(), warning));
             }
         }

@@ -158,7 +158,7 @@ impl Reader<'_> {
     /// The latest fill.
     fn material(&mut self, offset: usize) -> MaterialId {
         if self.materials.is_empty() {
-            self.warnings.add("no fill", &self.text.path, self.text.place(offset), || {
+            self.text.warn(self.warnings, "no fill", offset, || {
                 "no fill (`f`) comes before this; it is shown in grey".to_owned()
             });
             self.materials.push(Material::grey());
@@ -169,7 +169,7 @@ impl Reader<'_> {
     fn sphere(&mut self, offset: usize) -> Result<(), InputError> {
         let (center, radius) = (self.vector("sphere x y z")?, self.number("sphere radius")?);
         if radius < 0.0 {
-            self.warnings.add("negative radius", &self.text.path, self.text.place(offset), || {
+            self.text.warn(self.warnings, "negative radius", offset, || {
                 "a negative radius means a sphere seen from inside only; it is seen from both sides here"
                     .to_owned()
             });

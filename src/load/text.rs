@@ -70,6 +70,17 @@ impl Text {
         InputError::refused(&self.path, self.place(offset), message)
     }
 
+    /// Warns about what is at a byte offset.
+    pub(super) fn warn(
+        &self,
+        warnings: &mut Warnings,
+        kind: &str,
+        offset: usize,
+        message: impl FnOnce() -> String,
+    ) {
+        warnings.add(kind, &self.path, || (self.place(offset), message()));
+    }
+
     /// Refuses a primitive that begins at a byte offset, or warns of what became of it.
     pub(super) fn added(
         &self,
@@ -81,12 +92,12 @@ impl Text {
             Err(problem) => return Err(self.error(offset, problem.to_string())),
             Ok(Added::Flat) => {}
             Ok(Added::WithoutArea) => {
-                warnings.add("without area", &self.path, self.place(offset), || {
+                self.warn(warnings, "without area", offset, || {
                     "this shape has no area and is left out".to_owned()
                 });
             }
             Ok(Added::Bent { off_plane }) => {
-                warnings.add("bent", &self.path, self.place(offset), || {
+                self.warn(warnings, "bent", offset, || {
                     format!(
                         "this polygon is not quite planar: a vertex lies {off_plane:.1e} of the polygon's extent off \
                          its plane, and neighbours may not meet exactly"

@@ -9,6 +9,7 @@ use crate::film::SamplePattern;
 use crate::rays::RayCounts;
 use crate::scene::{Light, Material, Scene};
 use glam::{DVec2, DVec3};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A scene made ready for the f64 reference.
 pub struct Tracer<'a> {
@@ -16,6 +17,7 @@ pub struct Tracer<'a> {
     view: View,
     hierarchy: Hierarchy,
     samples: SamplePattern,
+    stop: &'a AtomicBool,
 }
 
 /// What a hit knows of itself.
@@ -41,14 +43,15 @@ struct Child {
 }
 
 impl<'a> Tracer<'a> {
-    /// Builds the hierarchy.
+    /// Builds the hierarchy. Once `stop` is set, rays return black, so that even a deep tree of rays ends soon.
     #[must_use]
-    pub fn new(scene: &'a Scene) -> Self {
+    pub fn new(scene: &'a Scene, stop: &'a AtomicBool) -> Self {
         Self {
             scene,
             view: View::new(&scene.camera, &scene.image),
             hierarchy: Hierarchy::new(Primitive::all(&scene.geometry, &scene.materials)),
             samples: SamplePattern::new(&scene.render),
+            stop,
         }
     }
 
@@ -67,6 +70,9 @@ impl<'a> Tracer<'a> {
 
     /// What arrives along a ray. Its weight is how much of that reaches the eye.
     fn radiance(&self, ray: &Ray, weight: DVec3, depth: u32, counts: &mut RayCounts) -> DVec3 {
+        if self.stop.load(Ordering::Relaxed) {
+            return DVec3::ZERO;
+        }
         let Some(hit) = self.hierarchy.closest(ray) else {
             return self.scene.image.background.as_dvec3();
         };

@@ -309,6 +309,21 @@ fn beer_takes_its_share_over_the_length_inside() {
 }
 
 #[test]
+fn what_is_absorbed_on_the_way_counts_towards_the_least_weight() {
+    // Straight through 3 units of a = 2: e⁻⁶ = 0.00248 is left when the ray comes out.
+    let seen = |min_weight: f64| {
+        let toml = format!(
+            "[render]\nmin_weight = {min_weight}\n{}[material.tinted]\nior = 1\nabsorption = 2\n\
+             [[sphere]]\ncenter = [0, 0, 0]\nradius = 1.5\nmaterial = \"tinted\"\n",
+            looking_down().replace("size = [1, 1]", "size = [1, 1]\nbackground = 1")
+        );
+        pixel(&toml)[0]
+    };
+    assert!((f64::from(seen(0.002)) - (-6.0_f64).exp()).abs() < F32);
+    assert_eq!(seen(0.003), 0.0);
+}
+
+#[test]
 fn fixed_shares_are_the_coefficients_themselves() {
     // A mirror of (0.25, 0.5, 0) above a black floor, looking down: the sky above is seen by the mirror share, the
     // white floor below by the transmission share.

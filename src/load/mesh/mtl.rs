@@ -127,9 +127,7 @@ fn checked(
         }
         other => {
             let name = number::shortened(other);
-            warnings.add(other, &text.path, text.place(offset), || {
-                format!("`{name}` is not modelled and left out")
-            });
+            text.warn(warnings, other, offset, || format!("`{name}` is not modelled and left out"));
             Ok(None)
         }
     }
@@ -149,8 +147,10 @@ fn modelled(material: &tobj::Material, path: &Path, warnings: &mut Warnings) -> 
     let ior = rounded(material.optical_density.unwrap_or(1.0));
     let illum = material.illumination_model.unwrap_or(2);
     let mut warn = |what: &str| {
-        let place = Place::Element(format!("material {}", material.name));
-        warnings.add(&format!("illum {illum}"), path, place, || format!("illum {illum}: {what}"));
+        let kind = format!("illum {illum}");
+        warnings.add(&kind, path, || {
+            (Place::Element(format!("material {}", material.name)), format!("illum {illum}: {what}"))
+        });
     };
     match illum {
         5 => warn("its Fresnel effect is not modelled; the mirror is Ks at every angle"),

@@ -144,7 +144,7 @@ impl Pass<'_> {
             "shadow_obj" | "trace_obj" => {}
             "l" | "p" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm" | "trim"
             | "hole" | "scrv" | "sp" | "end" | "con" | "ctech" | "stech" | "call" | "csh" => {
-                warnings.add(keyword, &self.text.path, self.text.place(offset), || {
+                self.text.warn(warnings, keyword, offset, || {
                     format!("`{keyword}` is not modelled and left out; only faces (`f`) are shown")
                 });
             }

@@ -131,8 +131,8 @@ impl Mesh {
             let normals = triangle.normals.map(|normals| normals.map(|normal| first_normal + normal));
             let added = geometry.add_triangle(corners, normals, material);
             if added.map_err(|problem| self.error(place(), problem.to_string()))? == Added::WithoutArea {
-                warnings.add("without area", &self.path, place(), || {
-                    "a triangle of this face has no area and is left out".to_owned()
+                warnings.add("without area", &self.path, || {
+                    (place(), "a triangle of this face has no area and is left out".to_owned())
                 });
             }
         }

@@ -1,6 +1,6 @@
 //! Values of a TOML document, each read with the place to point at when it is not what is wanted.
 
-use crate::load::error::{InputError, Place, Warnings};
+use crate::load::error::{InputError, Warnings};
 use crate::load::number::{self, rounded_3};
 use crate::load::suggest::{did_you_mean, listed};
 use crate::load::text::Text;
@@ -96,10 +96,6 @@ impl<'a> Value<'a> {
     /// Refuses the value.
     pub(super) fn error(&self, message: impl Into<String>) -> InputError {
         self.text.error(self.offset(), message)
-    }
-
-    pub(super) fn place(&self) -> Place {
-        self.text.place(self.offset())
     }
 
     /// Where the value begins; a table that a header opens begins at the header.
@@ -260,6 +256,6 @@ impl<'a> Value<'a> {
 
     /// Warns about the value.
     pub(super) fn warn(&self, warnings: &mut Warnings, message: &str) {
-        warnings.add(message, &self.text.path, self.place(), || message.to_owned());
+        self.text.warn(warnings, message, self.offset(), || message.to_owned());
     }
 }
