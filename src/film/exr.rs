@@ -10,8 +10,8 @@ pub(super) fn write(picture: &Image, writer: &mut (impl Write + Seek)) -> io::Re
         let [r, g, b] = picture.pixels[position.y() * width + position.x()];
         (r, g, b)
     };
-    // Rows in increasing order make the bytes a function of the picture; the faster encodings let them depend on
-    // which worker is done first.
+    // Rows in increasing order make the bytes a function of the picture; the faster encodings leave the order of their
+    // blocks open, and a parallel writer then writes them as they are done.
     let layer = Layer::new(
         (width, height),
         LayerAttributes::default(),

@@ -283,3 +283,74 @@ fn bounds_of(points: &[DVec3]) -> (DVec3, DVec3) {
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     (low, high)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn t_of_sphere(origin: [f64; 3], direction: [f64; 3], center: [f64; 3], radius: f64) -> Option<f64> {
+        let ray = Ray::new(DVec3::from(origin), DVec3::from(direction), None);
+        sphere(&ray, DVec3::from(center), radius).filter(|&t| t > 0.0)
+    }
+
+    #[track_caller]
+    fn assert_t(found: Option<f64>, expected: f64, relative: f64) {
+        let found = found.expect("a hit");
+        assert!((found - expected).abs() <= relative * expected, "t = {found:e}, expected {expected:e}");
+    }
+
+    #[test]
+    fn spheres_far_away_keep_their_shape() {
+        // At half the radius off the axis the near point is √(1 − ¼) before the centre.
+        for distance in [100.0, 4100.0, 65536.0, 1e6, 1e9] {
+            let t = t_of_sphere([0.0, 0.5, -distance], [0.0, 0.0, 1.0], [0.0; 3], 1.0);
+            assert_t(t, distance - 0.75_f64.sqrt(), 1e-15);
+        }
+    }
+
+    #[test]
+    fn spheres_are_touched_or_missed_at_the_limb() {
+        let at_height = |y: f64| t_of_sphere([0.0, y, -4.0], [0.0, 0.0, 1.0], [0.0; 3], 1.0);
+        assert_eq!(at_height(1.0), Some(4.0));
+        assert_eq!(at_height(1.0_f64.next_up()), None);
+        assert!(at_height(1.0_f64.next_down()).is_some_and(|t| t < 4.0));
+    }
+
+    #[test]
+    fn a_ground_of_large_radius_is_met_where_it_is() {
+        // The smaller root in sixty decimal digits. Sixteen lose six of them here: the origin is 1 above a ball of 10⁶.
+        let t = t_of_sphere([0.0, 1.0, -5.0], [0.0, -0.6, 0.8], [0.0, -1e6, 0.0], 1e6);
+        assert_t(t, 1.666677870315597141, 1e-9);
+    }
+
+    #[test]
+    fn spheres_are_met_from_inside_and_not_from_before_them() {
+        assert_eq!(t_of_sphere([0.0, 0.0, 0.5], [0.0, 0.0, 1.0], [0.0; 3], 1.0), Some(0.5));
+        assert_eq!(t_of_sphere([0.0; 3], [0.0, 0.0, 1.0], [0.0; 3], 1.0), Some(1.0));
+        assert_eq!(t_of_sphere([0.0, 0.0, 2.0], [0.0, 0.0, 1.0], [0.0; 3], 1.0), None);
+        // t is the ray's parameter: half of it for twice the direction.
+        assert_eq!(t_of_sphere([0.0, 0.0, -3.0], [0.0, 0.0, 2.0], [0.0; 3], 1.0), Some(1.0));
+    }
+
+    #[test]
+    fn a_polygon_seen_edge_on_is_met_within_its_outline_or_not_at_all() {
+        // A square whose plane f64 cannot hold, and rays in that plane to rounding.
+        let (u, v) = (DVec3::new(0.3, 0.7, -0.2).normalize(), DVec3::new(0.7, -0.3, 0.1));
+        let v = (v - v.dot(u) * u).normalize();
+        let vertices = [u + v, v - u, -u - v, u - v];
+        let normal = newell_normal(&vertices);
+        let mut hits = 0;
+        for step in 0..20_000 {
+            let (sin, cos) = (f64::from(step) * 0.001).sin_cos();
+            let direction = sin * u + cos * v;
+            let origin = -3.0 * direction + 0.3 * (cos * u - sin * v);
+            if let Some(t) = polygon(&Ray::new(origin, direction, None), &vertices, normal) {
+                hits += 1;
+                let distance = (origin + t * direction).length();
+                // The corners are √2 from the middle, and along an axis of the world at most √3 times as much.
+                assert!(distance < 2.5, "step {step}: t = {t} is {distance} from the middle of the square");
+            }
+        }
+        assert!(hits > 100, "only {hits} rays of this kind hit");
+    }
+}

@@ -211,3 +211,77 @@ impl Shading<'_> {
         Ray::new(origin, direction_from(origin), Some(Departure { from: self.primitive.id, inward }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Geometry, ImageSettings, MaterialId, Projection, RenderSettings, Rgb};
+    use glam::Vec3;
+
+    /// A closed convex solid, an octahedron, off any grid, and a light far from it.
+    fn octahedron(center: Vec3, size: f32) -> (Scene, Vec<[usize; 2]>) {
+        let axes = [Vec3::new(0.9, 0.3, -0.2), Vec3::new(-0.3, 0.8, 0.4), Vec3::new(0.25, -0.35, 0.85)];
+        let corners =
+            [axes[0], -axes[0], axes[1], -axes[1], axes[2], -axes[2]].map(|axis| center + size * axis);
+        let mut geometry = Geometry::default();
+        geometry.add_vertices(corners).unwrap();
+        let mut edges = Vec::new();
+        for (x, y, z) in (0..8_u32).map(|octant| (octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2))) {
+            // Counter-clockwise from outside: a mirrored octant turns the other way.
+            let is_mirrored = (x + y + z) % 2 == 1;
+            let corners = if is_mirrored { [x, z, y] } else { [x, y, z] };
+            geometry.add_triangle(corners, None, MaterialId(0)).unwrap();
+            edges.extend([[x, y], [y, z], [z, x]].map(|edge| edge.map(|index| index as usize)));
+        }
+        let scene = Scene {
+            image: ImageSettings::default(),
+            render: RenderSettings::default(),
+            camera: Camera {
+                eye: center + 9.0 * size * Vec3::ONE,
+                target: center,
+                up: Vec3::Y,
+                projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
+            },
+            ambient: Rgb::ZERO,
+            lights: Vec::new(),
+            materials: vec![Material::grey()],
+            geometry,
+        };
+        (scene, edges)
+    }
+
+    /// Rays aimed in f64 at edges and corners, as no pixel is: the point hit lies on two faces or more, to rounding, and
+    /// none of them may hide from it what stands before all of them.
+    #[test]
+    fn a_point_on_an_edge_is_not_shadowed_by_the_faces_that_meet_there() {
+        let stop = AtomicBool::new(false);
+        let mut hits = 0;
+        for (center, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-9), (Vec3::new(1e4, -2e4, 3e3), 1.0)] {
+            let (scene, edges) = octahedron(center, size);
+            let tracer = Tracer::new(&scene, &stop);
+            let vertices: Vec<DVec3> =
+                scene.geometry.vertices.iter().map(|vertex| vertex.as_dvec3()).collect();
+            for (step, [a, b]) in edges.iter().cycle().take(6000).enumerate() {
+                let along = (step % 101) as f64 / 100.0;
+                let target = vertices[*a] + along * (vertices[*b] - vertices[*a]);
+                let angles = DVec2::new(step as f64 * 0.37, step as f64 * 0.11);
+                let aside = DVec3::new(angles.x.sin(), angles.y.cos(), (angles.x + angles.y).sin());
+                let eye = center.as_dvec3() + 20.0 * f64::from(size) * aside;
+                let ray = Ray::new(eye, (target - eye).normalize(), None);
+                let Some(hit) = tracer.hierarchy.closest(&ray) else { continue };
+                let shading = tracer.shading(&ray, &hit);
+                if !shading.entering {
+                    continue; // on the silhouette a face that is seen from inside may come first
+                }
+                hits += 1;
+                // From a point of a convex solid that it sees, the eye is not hidden.
+                let back = shading.leave(true, |origin| eye - origin);
+                assert!(
+                    !tracer.hierarchy.occluded(&back, 1.0),
+                    "edge {a} {b} of the solid at {center}, step {step}"
+                );
+            }
+        }
+        assert!(hits > 9000, "{hits} rays hit");
+    }
+}

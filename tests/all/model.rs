@@ -472,3 +472,36 @@ fn vertex_normals_shade_and_geometry_decides_sides() {
         "light from below the true surface, though before the leaning normal"
     );
 }
+
+/// What a ray sees that meets, at the origin, a triangle in the plane z = 0 with a vertex normal of its own choice;
+/// white above, black below.
+fn seen_at_leaning_normal(eye: [f64; 3], normal: &str, material: &str) -> f32 {
+    let folder = crate::support::Folder::new();
+    folder.write("leaning.obj", format!("v -5 -5 0\nv 5 -5 0\nv 0 5 0\nvn {normal}\nf 1//1 2//1 3//1\n"));
+    let toml = format!(
+        "{}[material.black]\n[material.m]\n{material}\n[[mesh]]\nfile = \"leaning.obj\"\nmaterial = \"m\"\n{}",
+        one_ray(eye, [0.0, 0.0, 0.0]).replace("size = [1, 1]", "size = [1, 1]\nbackground = 1"),
+        shown_at(-1.0, "black").replace("10", "1000"),
+    );
+    let scene = wavelane::load::load(&folder.write("scene.toml", toml)).unwrap().scene;
+    crate::support::render_whole(&scene).image.pixels[0][0]
+}
+
+#[test]
+fn a_mirrored_ray_never_goes_below_the_true_surface() {
+    // About this normal the ray from above would be mirrored to (0.38, 0, -0.92).
+    assert_eq!(seen_at_leaning_normal([0.0, 0.0, 3.0], "1 0 0.2", "mirror = 1"), 1.0);
+}
+
+#[test]
+fn a_refracted_ray_never_stays_above_the_true_surface() {
+    // By this normal the grazing ray would be refracted to a direction that rises by 0.27; by the true normal it is
+    // totally reflected, so nothing is transmitted.
+    let material = "ior = 0.76923\nfresnel = false";
+    assert_eq!(seen_at_leaning_normal([2.9962, 0.0, 0.15], "1 0 1", material), 0.0);
+    // From steeply above it goes through, and ends on the black below.
+    assert_eq!(seen_at_leaning_normal([0.5, 0.0, 3.0], "1 0 1", material), 0.0);
+    // Seen from above, the mirrored share of the grazing ray is white.
+    let mirror = "ior = 0.76923\nfresnel = false\nmirror = 0.5\ntransmission = 0";
+    assert_eq!(seen_at_leaning_normal([2.9962, 0.0, 0.15], "1 0 1", mirror), 0.5);
+}

@@ -153,6 +153,29 @@ fn no_ray_leaves_a_closed_mesh() {
     }
 }
 
+/// Rays that fall exactly on the seams and corners of a tiled plane; tiles of both senses, polygons beside triangles.
+#[test]
+fn no_ray_falls_between_tiles() {
+    let mut tiles = String::new();
+    for (x, y) in (0..8).flat_map(|x| (0..8).map(move |y| (x, y))) {
+        let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| format!("[{x}, {y}, 0]"));
+        let [a, b, c, d] = &corners;
+        tiles += &match (x + 2 * y) % 3 {
+            0 => format!("[[polygon]]\nvertices = [{a}, {b}, {c}, {d}]\nmaterial = \"m\"\n"),
+            1 => format!("[[polygon]]\nvertices = [{d}, {c}, {b}, {a}]\nmaterial = \"m\"\n"),
+            _ => format!(
+                "[[triangle]]\nvertices = [{a}, {b}, {c}]\nmaterial = \"m\"\n[[triangle]]\nvertices = [{a}, {c}, {d}]\nmaterial = \"m\"\n"
+            ),
+        };
+    }
+    // The middles of 14 × 14 pixels of half a unit around (4, 4) are the lattice points and the middles between them.
+    let image = picture(&format!(
+        "[image]\nsize = [14, 14]\nbackground = 1\n[camera]\nkind = \"orthographic\"\neye = [4.25, 4.25, 3]\ntarget = [4.25, 4.25, 0]\nup = [0, 1, 0]\nheight = 7\n[material.m]\n{tiles}"
+    ));
+    let holes = image.pixels.iter().filter(|pixel| **pixel != [0.0; 3]).count();
+    assert_eq!(holes, 0, "{:?}", image.pixels);
+}
+
 /// On a convex solid every point that faces the light is lit: a dark one has shadowed itself or its neighbour.
 #[test]
 fn no_face_of_a_convex_solid_shadows_itself_or_its_neighbour() {
