@@ -320,7 +320,7 @@ mod tests {
     fn a_ground_of_large_radius_is_met_where_it_is() {
         // The smaller root in sixty decimal digits. Sixteen lose six of them here: the origin is 1 above a ball of 10⁶.
         let t = t_of_sphere([0.0, 1.0, -5.0], [0.0, -0.6, 0.8], [0.0, -1e6, 0.0], 1e6);
-        assert_t(t, 1.666677870315597141, 1e-9);
+        assert_t(t, 1.666_677_870_315_597, 1e-9);
     }
 
     #[test]

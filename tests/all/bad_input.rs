@@ -220,7 +220,7 @@ fn any_file() {
 /// Where a file is cut, or a byte of it changed, there is a scene or a message, and never a panic.
 #[test]
 fn damaged_files_end_in_a_scene_or_a_message() {
-    let toml = std::fs::read(crate::support::root().join("scenes/glass.toml")).unwrap();
+    let toml = crate::support::specification_example().into_bytes();
     let nff = b"b 0.1 0.2 0.3\nv\nfrom 1 2 3\nat 0 0 0\nup 0 0 1\nangle 30\nhither 1\nresolution 64 48\nl 1 1 1\nf 1 0.5 0.25 0.8 0.4 10 0.1 1\ns 0 0 0 1\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n".to_vec();
     let obj =
         b"mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 1 0\nvn 0 0 1\nusemtl m\nf 1//1 2//1 3//-1 4//1\n"
@@ -229,6 +229,7 @@ fn damaged_files_end_in_a_scene_or_a_message() {
     let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec();
     let folder = Folder::new();
     folder.write("b.obj", &obj);
+    folder.write("bunny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for (damaged, entry, content) in [
         ("a.toml", "a.toml", toml),
         ("a.nff", "a.nff", nff),

@@ -272,7 +272,7 @@ fn an_interrupted_render_is_130_and_leaves_no_file() {
     let place = Workplace::new();
     let (scene, output) = (place.at("scene.toml"), place.at("a.png"));
     let arguments =
-        ["render", &scene, "-o", &output, "--size", "4000x4000", "--samples", "64", "--progress", "json"];
+        ["render", &scene, "-o", &output, "--size", "1000x1000", "--samples", "16", "--progress", "json"];
     let mut child =
         Command::new(env!("CARGO_BIN_EXE_wavelane")).args(arguments).stderr(Stdio::piped()).spawn().unwrap();
     // Its first line of progress says that it is at work.

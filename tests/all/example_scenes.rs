@@ -1,6 +1,6 @@
 //! The scenes that come with the project: each loads without a warning and shows something.
 
-use crate::support::{Folder, render_whole, root};
+use crate::support::{Folder, render_whole, root, specification_example};
 use wavelane::load::load;
 
 #[test]
@@ -28,12 +28,10 @@ fn every_example_scene_renders() {
 /// The example in the scene format's specification shows every key, and is accepted as it stands.
 #[test]
 fn the_specification_is_true() {
-    let page = std::fs::read_to_string(root().join("docs/scenes.md")).unwrap();
-    let (_, after) = page.split_once("```toml\n").unwrap();
-    let (example, _) = after.split_once("```").unwrap();
     let folder = Folder::new();
     folder.write("bunny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    let loaded = load(&folder.write("scene.toml", example)).unwrap_or_else(|error| panic!("{error}"));
+    let loaded =
+        load(&folder.write("scene.toml", specification_example())).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(loaded.warnings, []);
     assert_eq!((loaded.scene.geometry.primitive_count(), loaded.scene.lights.len()), (4, 2));
 }

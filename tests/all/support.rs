@@ -100,3 +100,10 @@ pub(crate) fn stderr(output: &Output) -> String {
 pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
+
+/// The scene in the scene format's specification, which has every key; it names a mesh bunny.obj.
+pub(crate) fn specification_example() -> String {
+    let page = std::fs::read_to_string(root().join("docs/scenes.md")).unwrap();
+    let (_, after) = page.split_once("```toml\n").unwrap();
+    after.split_once("```").unwrap().0.to_owned()
+}
