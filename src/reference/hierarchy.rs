@@ -4,7 +4,7 @@
 //! Hierarchies", 2007. Plain on purpose; tests hold it against trying every primitive.
 
 use super::ray::Ray;
-use super::shape::Primitive;
+use super::shape::{Meeting, Primitive};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -45,11 +45,9 @@ const STACK_SIZE: usize = DEPTH_OF_HALVING + 33;
 /// by this never hides a hit.
 const ROUNDING: f64 = 1.0 / (1_u64 << 47) as f64;
 
-/// How much two values of one t can differ by rounding. The worst case is a plane seen at a grazing angle; this allows
-/// for some hundred roundings.
-fn equal_t(ray: &Ray, t: f64) -> f64 {
-    const ROUNDING: f64 = 1.0 / (1_u64 << 44) as f64;
-    ROUNDING * (t + ray.origin.abs().max_element() / ray.direction.abs().max_element())
+/// Whether two surfaces are met at one t, as far as the rounding of either can tell.
+fn are_equal(a: &Meeting, b: &Meeting) -> bool {
+    (a.t - b.t).abs() <= a.uncertainty.max(b.uncertainty)
 }
 
 impl Hierarchy {
@@ -72,30 +70,36 @@ impl Hierarchy {
     /// The hit of smallest t > 0; of equal ones that of the smallest id. Surfaces that coincide are met at one t, but each
     /// rounds it in its own way, so what differs by no more than rounding counts as equal.
     pub(super) fn closest(&self, ray: &Ray) -> Option<Hit<'_>> {
-        let mut best: Option<Hit<'_>> = None;
-        let mut nearest_t = f64::INFINITY;
+        // Whatever may equal the nearest is still looked at, the coarsest surface at a grazing angle included.
+        let scale = (self.extent + ray.origin.abs().max_element()) / ray.direction.abs().max_element();
+        let slack = 1024.0 * ROUNDING * scale;
+        let mut nearest: Option<Meeting> = None;
+        let mut candidates: Vec<(Meeting, &Primitive)> = Vec::new();
         self.visit(ray, f64::INFINITY, |primitive| {
-            if let Some(t) = primitive.intersect(ray) {
-                let equal_within = equal_t(ray, t);
-                let first = best.is_none_or(|best| {
-                    t < nearest_t - equal_within
-                        || (t <= nearest_t + equal_within && primitive.id < best.primitive.id)
-                });
-                if first {
-                    best = Some(Hit { t, primitive });
+            let Some(meeting) = primitive.intersect(ray) else {
+                return nearest.map_or(f64::INFINITY, |nearest| nearest.t + slack);
+            };
+            let nearest = match nearest {
+                Some(nearest) if nearest.t <= meeting.t => nearest,
+                _ => {
+                    candidates.retain(|(candidate, _)| are_equal(candidate, &meeting));
+                    *nearest.insert(meeting)
                 }
-                nearest_t = nearest_t.min(t);
+            };
+            if are_equal(&meeting, &nearest) {
+                candidates.push((meeting, primitive));
             }
-            if best.is_some() { nearest_t + equal_t(ray, nearest_t) } else { f64::INFINITY }
+            nearest.t + slack
         });
-        best
+        let first = candidates.into_iter().min_by_key(|(_, primitive)| primitive.id);
+        first.map(|(meeting, primitive)| Hit { t: meeting.t, primitive })
     }
 
     /// Whether something that casts a shadow lies at 0 < t < `end`.
     pub(super) fn occluded(&self, ray: &Ray, end: f64) -> bool {
         let mut occluded = false;
         self.visit(ray, end, |primitive| {
-            if primitive.casts_shadow && primitive.intersect(ray).is_some_and(|t| t < end) {
+            if primitive.casts_shadow && primitive.intersect(ray).is_some_and(|meeting| meeting.t < end) {
                 occluded = true;
             }
             if occluded { f64::NEG_INFINITY } else { end }
@@ -302,11 +306,11 @@ mod tests {
     /// Trying every primitive: the smallest t, and the smallest id among those that equal it.
     fn closest_of_all(hierarchy: &Hierarchy, ray: &Ray) -> Option<(f64, u32)> {
         let all = hierarchy.primitives.iter();
-        let hits: Vec<(u32, f64)> =
+        let hits: Vec<(u32, Meeting)> =
             all.filter_map(|primitive| Some((primitive.id.0, primitive.intersect(ray)?))).collect();
-        let nearest = hits.iter().map(|&(_, t)| t).fold(f64::INFINITY, f64::min);
-        let equal = hits.into_iter().filter(|&(_, t)| t <= nearest + equal_t(ray, nearest));
-        equal.min_by_key(|&(id, _)| id).map(|(id, t)| (t, id))
+        let nearest = hits.iter().map(|&(_, meeting)| meeting).min_by(|a, b| a.t.total_cmp(&b.t))?;
+        let equal = hits.into_iter().filter(|(_, meeting)| are_equal(meeting, &nearest));
+        equal.min_by_key(|&(id, _)| id).map(|(id, meeting)| (meeting.t, id))
     }
 
     proptest! {

@@ -10,6 +10,17 @@ pub(super) struct Primitive {
     pub(super) material: MaterialId,
     pub(super) casts_shadow: bool,
     pub(super) shape: Shape,
+    /// The largest magnitude of a coordinate of its points.
+    extent: f64,
+}
+
+/// Where a ray meets a primitive.
+#[derive(Clone, Copy)]
+pub(super) struct Meeting {
+    /// The ray's parameter, not a length.
+    pub(super) t: f64,
+    /// More than rounding can have moved t: the rounding of the coordinates, seen at the angle of the ray.
+    pub(super) uncertainty: f64,
 }
 
 pub(super) enum Shape {
@@ -19,6 +30,8 @@ pub(super) enum Shape {
     },
     Triangle {
         vertices: [DVec3; 3],
+        /// Geometric, unit.
+        normal: DVec3,
         normals: Option<Box<[DVec3; 3]>>,
     },
     Polygon {
@@ -50,9 +63,10 @@ impl Surface {
 impl Primitive {
     /// Every primitive of a scene.
     pub(super) fn all(geometry: &Geometry, materials: &[Material]) -> Vec<Self> {
-        let new = |id, material: MaterialId, shape| {
+        let new = |id, material: MaterialId, shape: Shape| {
             let casts_shadow = materials[material.0 as usize].casts_shadow;
-            Self { id, material, casts_shadow, shape }
+            let extent = shape.extent();
+            Self { id, material, casts_shadow, shape, extent }
         };
         let vertex = |index: u32| geometry.vertices[index as usize].as_dvec3();
         let normal = |index: u32| geometry.normals[index as usize].as_dvec3();
@@ -61,8 +75,10 @@ impl Primitive {
             new(sphere.id, sphere.material, shape)
         });
         let triangles = geometry.triangles.iter().map(|triangle| {
+            let vertices @ [a, b, c] = triangle.vertices.map(vertex);
             let shape = Shape::Triangle {
-                vertices: triangle.vertices.map(vertex),
+                vertices,
+                normal: (b - a).cross(c - a).normalize(),
                 normals: triangle.normals.map(|normals| Box::new(normals.map(normal))),
             };
             new(triangle.id, triangle.material, shape)
@@ -76,21 +92,36 @@ impl Primitive {
         spheres.chain(triangles).chain(polygons).collect()
     }
 
-    /// The smallest t > 0 at which the ray meets it; t is the ray's parameter, not a length.
-    pub(super) fn intersect(&self, ray: &Ray) -> Option<f64> {
+    /// The smallest t > 0 at which the ray meets it. For a ray that starts on a surface, what differs from 0 by no more
+    /// than rounding is 0: this primitive touches that surface there, however large either may be.
+    pub(super) fn intersect(&self, ray: &Ray) -> Option<Meeting> {
         let departure = ray.departure.filter(|departure| departure.from == self.id);
-        let t = match (&self.shape, departure) {
-            (Shape::Sphere { center, .. }, Some(Departure { inward: true, .. })) => far_side(ray, *center),
-            (_, Some(_)) => None,
-            (Shape::Sphere { center, radius }, None) => sphere(ray, *center, *radius),
-            (Shape::Triangle { vertices, .. }, None) => triangle(ray, vertices).map(|hit| hit.t),
-            (Shape::Polygon { vertices, normal, .. }, None) => polygon(ray, vertices, *normal),
+        let rounding = Surface::ROUNDING * (self.extent + ray.origin.abs().max_element());
+        let meeting = |t: f64, normal: DVec3| {
+            let uncertainty = rounding / normal.dot(ray.direction).abs();
+            let least = if ray.departure.is_some() && departure.is_none() { uncertainty } else { 0.0 };
+            (t > least).then_some(Meeting { t, uncertainty })
         };
-        t.filter(|&t| t > 0.0)
+        match (&self.shape, departure) {
+            (Shape::Sphere { center, radius }, Some(Departure { inward: true, .. })) => {
+                let t = far_side(ray, *center);
+                meeting(t, (ray.at(t) - *center) / *radius)
+            }
+            (_, Some(_)) => None,
+            (Shape::Sphere { center, radius }, None) => {
+                let roots = sphere(ray, *center, *radius)?;
+                roots.into_iter().find_map(|t| meeting(t, (ray.at(t) - *center) / *radius))
+            }
+            (Shape::Triangle { vertices, normal, .. }, None) => meeting(triangle(ray, vertices)?.t, *normal),
+            (Shape::Polygon { vertices, normal, .. }, None) => {
+                meeting(polygon(ray, vertices, *normal)?, *normal)
+            }
+        }
     }
 
     /// The surface at the hit that [`Self::intersect`] found.
     pub(super) fn surface(&self, ray: &Ray, t: f64) -> Surface {
+        let uncertainty = Surface::ROUNDING * self.extent;
         // Points are put back onto the primitive, since origin + t·direction is off it by the rounding of t.
         match &self.shape {
             Shape::Sphere { center, radius } => {
@@ -99,21 +130,20 @@ impl Primitive {
                     point: *center + *radius * normal,
                     geometric_normal: normal,
                     shading_normal: normal,
-                    uncertainty: Surface::ROUNDING * (center.abs().max_element() + radius),
+                    uncertainty,
                 }
             }
-            Shape::Triangle { vertices: [a, b, c], normals } => {
+            Shape::Triangle { vertices: [a, b, c], normal, normals } => {
                 let weights = triangle(ray, &[*a, *b, *c]).map_or([1.0 / 3.0; 3], |hit| hit.barycentric);
                 let mean = |of: &[DVec3; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
-                let geometric_normal = (*b - *a).cross(*c - *a).normalize();
                 Surface {
                     point: mean(&[*a, *b, *c]),
-                    geometric_normal,
+                    geometric_normal: *normal,
                     shading_normal: match normals {
-                        Some(normals) => on_side_of(geometric_normal, mean(normals)),
-                        None => geometric_normal,
+                        Some(normals) => on_side_of(*normal, mean(normals)),
+                        None => *normal,
                     },
-                    uncertainty: Surface::ROUNDING * largest_coordinate(&[*a, *b, *c]),
+                    uncertainty,
                 }
             }
             Shape::Polygon { vertices, normal, normals } => {
@@ -126,7 +156,7 @@ impl Primitive {
                         Some(normals) => on_side_of(*normal, patch_normal(point, vertices, normals, *normal)),
                         None => *normal,
                     },
-                    uncertainty: Surface::ROUNDING * largest_coordinate(vertices),
+                    uncertainty,
                 }
             }
         }
@@ -145,10 +175,24 @@ impl Primitive {
     }
 }
 
+impl Shape {
+    fn extent(&self) -> f64 {
+        let largest =
+            |points: &[DVec3]| points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
+        match self {
+            Self::Sphere { center, radius } => center.abs().max_element() + radius,
+            Self::Triangle { vertices, .. } => largest(vertices),
+            Self::Polygon { vertices, .. } => largest(vertices),
+        }
+    }
+}
+
+/// Both t at which the ray's line meets the sphere, the nearer first.
+///
 /// |o + t·d − c|² = r². The discriminant is taken as r² − l² with l the distance of the centre from the line, since
 /// b² − 4ac loses the radius of a sphere far away. Source: Hearn and Baker, "Computer Graphics with OpenGL", as used in
 /// Haines, Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
-fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Option<f64> {
+fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Option<[f64; 2]> {
     let from_center = ray.origin - center;
     let a = ray.direction.length_squared();
     let closest_t = -from_center.dot(ray.direction) / a;
@@ -166,13 +210,12 @@ fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Option<f64> {
     let distance = from_center.length();
     let product = (distance - radius) * (distance + radius) / a;
     let smaller = product / larger;
-    let (near, far) = if smaller < larger { (smaller, larger) } else { (larger, smaller) };
-    if near > 0.0 { Some(near) } else { Some(far) }
+    Some(if smaller < larger { [smaller, larger] } else { [larger, smaller] })
 }
 
 /// The second root for a ray that starts on the sphere: with |o − c| = r the quadratic has the roots 0 and this.
-fn far_side(ray: &Ray, center: DVec3) -> Option<f64> {
-    Some(-2.0 * (ray.origin - center).dot(ray.direction) / ray.direction.length_squared())
+fn far_side(ray: &Ray, center: DVec3) -> f64 {
+    -2.0 * (ray.origin - center).dot(ray.direction) / ray.direction.length_squared()
 }
 
 struct TriangleHit {
@@ -274,10 +317,6 @@ fn on_side_of(geometric_normal: DVec3, mean: DVec3) -> DVec3 {
     }
 }
 
-fn largest_coordinate(points: &[DVec3]) -> f64 {
-    points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max)
-}
-
 fn bounds_of(points: &[DVec3]) -> (DVec3, DVec3) {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -290,7 +329,7 @@ mod tests {
 
     fn t_of_sphere(origin: [f64; 3], direction: [f64; 3], center: [f64; 3], radius: f64) -> Option<f64> {
         let ray = Ray::new(DVec3::from(origin), DVec3::from(direction), None);
-        sphere(&ray, DVec3::from(center), radius).filter(|&t| t > 0.0)
+        sphere(&ray, DVec3::from(center), radius)?.into_iter().find(|&t| t > 0.0)
     }
 
     #[track_caller]

@@ -132,7 +132,7 @@ fn ball(center: Vec3, radius: f32, quads: bool) -> String {
     toml
 }
 
-/// Nothing of the background is seen from inside a closed ball, though every ray of a fine grid passes close by edges.
+/// Nothing of the background is seen from inside a closed ball, whatever edges the rays of a fine grid pass by.
 #[test]
 fn no_ray_leaves_a_closed_mesh() {
     for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-6), (Vec3::new(1000.0, -2000.0, 500.0), 1.0)]
@@ -168,7 +168,7 @@ fn no_ray_falls_between_tiles() {
             ),
         };
     }
-    // The middles of 14 × 14 pixels of half a unit around (4, 4) are the lattice points and the middles between them.
+    // The middles of 14 × 14 pixels of half a unit, from (1, 1) to (7.5, 7.5): lattice points and the middles between.
     let image = picture(&format!(
         "[image]\nsize = [14, 14]\nbackground = 1\n[camera]\nkind = \"orthographic\"\neye = [4.25, 4.25, 3]\ntarget = [4.25, 4.25, 0]\nup = [0, 1, 0]\nheight = 7\n[material.m]\n{tiles}"
     ));
@@ -211,4 +211,28 @@ fn a_light_on_a_surface_is_not_hidden_by_it() {
     let lit = |image: &Image| image.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
     assert_eq!(lit(&picture(&toml("[[light]]\nposition = [0.7, 0.3, 3]\n"))), 3600);
     assert_eq!(lit(&picture(&toml("[[light]]\nposition = [0.7, 0.3, 3.1]\n"))), 0, "behind it, it is hidden");
+}
+
+/// A small triangle in the plane of a polygon, both tilted so that no f64 holds the plane; the polygon is much larger,
+/// so its distance is rounded much more coarsely.
+#[test]
+fn a_shape_on_a_large_one_is_seen_whole_and_not_shadowed_by_it() {
+    for size in [1.0, 1e3, 1e6, 1e9] {
+        let looking = "[image]\nsize = [60, 60]\n[camera]\nkind = \"orthographic\"\neye = [10, 10.3, 10.7]\ntarget = [0, 0, 0]\nup = [0, 0, 1]\nheight = 1\n";
+        let shapes = format!(
+            "[[triangle]]\nvertices = [[1, -1, 0], [0, 1, -1], [-1, 0, 1]]\nmaterial = \"small\"\n\
+             [[polygon]]\nvertices = [[{size}, -{size}, 0], [0, {size}, -{size}], [-{size}, 0, {size}]]\nmaterial = \"large\"\n"
+        );
+        let lit = picture(&format!(
+            "{looking}[[light]]\nposition = [8, 9, 10]\n[material.small]\ndiffuse = 1\n[material.large]\ndiffuse = 0.5\n{shapes}"
+        ));
+        let wrong = lit.pixels.iter().filter(|pixel| pixel[0] < 0.9).count();
+        assert_eq!(wrong, 0, "pixels that show the large one, or a shadow, at size {size}");
+        // As panes of one plane: the ray that leaves the first does not meet the second.
+        let panes = picture(&format!(
+            "{}[material.small]\nior = 1.5\nfresnel = false\ntransmission = 0.5\n[material.large]\nior = 1.5\nfresnel = false\ntransmission = 0.5\n{shapes}",
+            looking.replace("size = [60, 60]", "size = [60, 60]\nbackground = 1")
+        ));
+        assert!(panes.pixels.iter().all(|pixel| *pixel == [0.5; 3]), "panes at size {size}");
+    }
 }
