@@ -39,3 +39,4 @@ pub mod rays;
 pub mod reference;
 pub mod render;
 pub mod scene;
+mod whole_file;

@@ -39,7 +39,7 @@ pub struct Rendered {
 #[derive(Debug, Error)]
 pub enum RenderError {
     /// The region is empty or reaches over the image's edge.
-    #[error("the crop {},{},{},{} has no pixels in an image of {width} x {height}", region.x0, region.y0, region.x1, region.y1)]
+    #[error("the crop {},{},{},{} does not lie within the image of {width} x {height} pixels", region.x0, region.y0, region.x1, region.y1)]
     Region {
         /// What was asked for.
         region: Region,

@@ -45,6 +45,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.heat {
         film::check_writable(path)?;
     }
+    let pictures = [Some(&arguments.a), Some(&arguments.b), arguments.heat.as_ref()];
+    let pictures: Vec<&Path> = pictures.into_iter().flatten().map(PathBuf::as_path).collect();
+    output::check_json(arguments.json.as_deref(), &pictures)?;
     let (a, b, values) = read_alike(&arguments.a, &arguments.b)?;
     let limit = arguments.limit.unwrap_or(0.0);
     let Some(difference) = Difference::between(&a, &b, limit) else {

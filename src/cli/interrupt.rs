@@ -1,5 +1,7 @@
-//! Ctrl-C ends the program with exit code 130: at once, or where a render is under way when that has stopped.
+//! Ctrl-C ends the program with exit code 130 and no file half written: at once, or where rays are being traced as soon
+//! as these have stopped.
 
+use crate::whole_file;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 const INTERRUPTED: i32 = 130;
@@ -12,16 +14,30 @@ static STOP: AtomicBool = AtomicBool::new(false);
 pub(super) fn catch() {
     let handler = || {
         // A second Ctrl-C does not wait for the first.
-        if !IS_WATCHED.load(Ordering::Relaxed) || STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED);
+        if STOP.swap(true, Ordering::SeqCst) || !IS_WATCHED.load(Ordering::SeqCst) {
+            end();
         }
     };
-    // Without a handler Ctrl-C still ends the program, and no file is ever half there.
+    // Without a handler Ctrl-C still ends the program, if not with this exit code.
     let _ = ctrlc::set_handler(handler);
 }
 
-/// Is true once the user has asked to stop; from now on it is the caller who stops.
-pub(super) fn watch() -> &'static AtomicBool {
-    IS_WATCHED.store(true, Ordering::Relaxed);
-    &STOP
+/// Does some work that stops soon once the flag is true.
+pub(super) fn watched<T>(work: impl FnOnce(&AtomicBool) -> T) -> T {
+    IS_WATCHED.store(true, Ordering::SeqCst);
+    let result = work(&STOP);
+    IS_WATCHED.store(false, Ordering::SeqCst);
+    result
+}
+
+/// Ends the program if Ctrl-C came when it was not looked at any more.
+pub(super) fn end_if_asked() {
+    if STOP.load(Ordering::SeqCst) {
+        end();
+    }
+}
+
+fn end() -> ! {
+    whole_file::discard_unfinished();
+    std::process::exit(INTERRUPTED)
 }

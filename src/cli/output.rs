@@ -1,8 +1,8 @@
 //! Where words go: results to stdout or a file, diagnostics to stderr.
 
 use super::Failure;
-use crate::film::write_whole;
 use crate::load::Loaded;
+use crate::whole_file;
 use serde::Serialize;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -28,6 +28,16 @@ pub(super) fn result(line: &impl Display) -> Result<(), Failure> {
     }
 }
 
+/// Says early whether [`json`] could write there, without taking the place of one of the `pictures`.
+pub(super) fn check_json(path: Option<&Path>, pictures: &[&Path]) -> Result<(), Failure> {
+    let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
+    if pictures.contains(&path) {
+        let message = format!("--json {}: a picture has this name; choose another", path.display());
+        return Err(Failure::Usage(message));
+    }
+    whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })
+}
+
 /// A report as JSON, to a file, or to stdout where the name is `-`.
 pub(super) fn json(report: &impl Serialize, path: &Path) -> Result<(), Failure> {
     let failed = |why| Failure::Write { path: path.to_owned(), why };
@@ -35,5 +45,5 @@ pub(super) fn json(report: &impl Serialize, path: &Path) -> Result<(), Failure> 
     if path == Path::new("-") {
         return result(&text);
     }
-    write_whole(path, |writer| writeln!(writer, "{text}")).map_err(failed)
+    whole_file::write(path, |writer| writeln!(writer, "{text}")).map_err(failed)
 }

@@ -97,19 +97,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     apply(arguments, scene);
     let load = start.elapsed().as_secs_f64();
     film::check_writable(&arguments.output)?;
+    output::check_json(arguments.json.as_deref(), &[&arguments.output])?;
 
     let whole = Region::whole(scene.image.width, scene.image.height);
     let region = arguments.crop.unwrap_or(whole);
     let progress = Progress::new(arguments.progress, region.pixels());
-    let options = RenderOptions {
-        region,
-        threads: arguments.threads.map_or(0, usize::from),
-        on_progress: &|done| progress.report(done),
-        stop: interrupt::watch(),
-    };
-    let rendered = render(scene, &options);
+    let rendered = interrupt::watched(|stop| {
+        let options = RenderOptions {
+            region,
+            threads: arguments.threads.map_or(0, usize::from),
+            on_progress: &|done| progress.report(done),
+            stop,
+        };
+        render(scene, &options)
+    });
     progress.finish();
     let rendered = rendered?;
+    interrupt::end_if_asked();
 
     let write_start = Instant::now();
     let depth = if arguments.bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight };

@@ -1,6 +1,7 @@
 //! Which file format a name asks for, and reading and writing in it.
 
-use super::{Image, exr, npy, png, whole_file};
+use super::{Image, exr, npy, png};
+use crate::whole_file;
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -87,7 +88,7 @@ impl Format {
 /// An unknown ending, or a file that cannot be written.
 pub fn write(image: &Image, path: &Path, depth: BitDepth) -> Result<(), FilmError> {
     let format = Format::of(path)?;
-    whole_file::write_whole(path, |writer| match format {
+    whole_file::write(path, |writer| match format {
         Format::Png => png::write(image, depth, writer),
         Format::Exr => exr::write(image, writer),
         Format::Npy => npy::write(image, writer),

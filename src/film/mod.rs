@@ -7,10 +7,8 @@ mod npy;
 mod png;
 mod sampling;
 mod srgb;
-mod whole_file;
 
 pub use format::{BitDepth, FilmError, Format, check_writable, read, write};
 pub use image::{Image, Region};
 pub use sampling::SamplePattern;
 pub use srgb::decode_srgb;
-pub use whole_file::write_whole;

@@ -1,8 +1,10 @@
 //! The camera and the light of a file that brings none: from in front, above and to the right, and all of it in view.
 
+use super::error::{InputError, Place};
 use super::number::rounded_3;
 use crate::scene::{Camera, Light, Projection, Rgb};
 use glam::{DVec3, Vec3};
+use std::path::Path;
 
 /// Where to look from and what to light it with.
 pub(super) struct Framing {
@@ -11,21 +13,28 @@ pub(super) struct Framing {
 }
 
 /// Frames what lies between two corners; where there is nothing, a unit cube around the origin.
-pub(super) fn framed(bounds: Option<(DVec3, DVec3)>) -> Framing {
+///
+/// # Errors
+/// What is so small for its distance from the origin that an f32 has no room for a camera beside it.
+pub(super) fn framed(path: &Path, bounds: Option<(DVec3, DVec3)>) -> Result<Framing, InputError> {
     let (low, high) = bounds.unwrap_or((DVec3::splat(-0.5), DVec3::splat(0.5)));
     let center = (low + high) / 2.0;
     // A single point has no extent to step back by.
     let extent = Some((high - low).length()).filter(|&extent| extent > 0.0).unwrap_or(1.0);
     let at = |offset: [f64; 3]| rounded_3(center + DVec3::from(offset) * extent);
-    Framing {
-        camera: Camera {
-            eye: at([0.45, 0.35, 0.75]),
-            target: rounded_3(center),
-            up: Vec3::Y,
-            projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
-        },
-        light: Light::Point { position: at([-1.0, 2.0, 1.5]), intensity: Rgb::ONE },
+    let camera = Camera {
+        eye: at([0.45, 0.35, 0.75]),
+        target: rounded_3(center),
+        up: Vec3::Y,
+        projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
+    };
+    if camera.check().is_err() || !camera.eye.is_finite() {
+        let message =
+            "this cannot be framed: it is too small for its distance from the origin; give a camera";
+        return Err(InputError::refused(path, Place::File, message));
     }
+    let light = Light::Point { position: at([-1.0, 2.0, 1.5]), intensity: Rgb::ONE };
+    Ok(Framing { camera, light })
 }
 
 /// Bounds that also hold a point.

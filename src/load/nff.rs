@@ -20,7 +20,7 @@ const ENTITIES: [&str; 14] =
 const MAX_DEPTH: u32 = 4;
 
 pub(super) fn load(path: &Path, warnings: &mut Warnings) -> Result<Scene, InputError> {
-    let text = Text::read(path)?;
+    let text = Text::read_lossy(path)?;
     let mut reader = Reader {
         text: &text,
         words: Words::new(&text),
@@ -208,7 +208,7 @@ impl Reader<'_> {
 
     fn into_scene(self) -> Result<Scene, InputError> {
         let camera = match self.view.offset.or(self.view.from.map(|(_, offset)| offset)) {
-            None => framed(self.geometry.bounds()).camera,
+            None => framed(&self.text.path, self.geometry.bounds())?.camera,
             Some(offset) => self.camera(offset)?,
         };
         let grey = 1.0 / (self.lights.len() as f64).sqrt();

@@ -54,6 +54,14 @@ impl Text {
         Err(text.error(end, format!("byte 0x{bad:02x} is not UTF-8 text; is this a binary file?")))
     }
 
+    /// Reads a file whose comments may be in any encoding; outside them what is not UTF-8 means nothing to any format.
+    pub(super) fn read_lossy(path: &Path) -> Result<Self, InputError> {
+        let bytes = read_bytes(path)?;
+        let content = String::from_utf8_lossy(&bytes);
+        let content = content.strip_prefix('\u{feff}').unwrap_or(&content).to_owned();
+        Ok(Self { path: path.to_owned(), content })
+    }
+
     /// Line and column of a byte offset.
     pub(super) fn place(&self, offset: usize) -> Place {
         let start = (0..=offset.min(self.content.len())).rev().find(|&at| self.content.is_char_boundary(at));

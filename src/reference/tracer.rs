@@ -55,7 +55,8 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// The mean of a pixel's samples, linear RGB; x and y count from the full image's top left.
+    /// The mean of a pixel's samples, linear RGB; x and y count from the full image's top left. Means nothing once the
+    /// tracer was told to stop.
     pub fn pixel(&self, x: u32, y: u32, counts: &mut RayCounts) -> [f64; 3] {
         let row_from_bottom = self.scene.image.height - 1 - y;
         let corner = DVec2::new(f64::from(x), f64::from(row_from_bottom));

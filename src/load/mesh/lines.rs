@@ -21,7 +21,10 @@ pub(super) fn logical_lines(content: &str) -> Vec<LogicalLine<'_>> {
     let mut offset = 0;
     for raw in content.split_inclusive('\n') {
         let line = raw.trim_end();
-        let code = line.split('#').next().unwrap_or_default();
+        // A name may hold a #, which begins a comment elsewhere.
+        let first = line.split_whitespace().next().unwrap_or_default();
+        let is_name = ["newmtl", "usemtl", "mtllib", "o", "g"].contains(&first);
+        let code = if is_name { line } else { line.split('#').next().unwrap_or_default() };
         let (code, continues) = match code.trim_end().strip_suffix('\\') {
             Some(code) => (code, true),
             None => (code, false),

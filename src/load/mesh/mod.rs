@@ -64,7 +64,7 @@ pub(super) fn load_alone(
     let choice = MaterialChoice::Own { first: MaterialId(1), otherwise: Some(grey) };
     let mut geometry = Geometry::default();
     mesh.add_to(&mut geometry, &Transform::IDENTITY, choice, warnings)?;
-    let framing = framed(mesh.bounds);
+    let framing = framed(path, mesh.bounds)?;
     Ok(Scene {
         image: ImageSettings::default(),
         render: RenderSettings::default(),

@@ -26,6 +26,10 @@ impl Library {
         self.by_name.keys().map(String::as_str)
     }
 
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.by_name.contains_key(name)
+    }
+
     /// The materials as the OBJ library wants them, and as a scene does; in the same order.
     pub(super) fn into_parts(self) -> (ForTobj, Vec<Material>) {
         ((self.parsed, self.by_name), self.materials)
@@ -34,7 +38,7 @@ impl Library {
 
 /// Adds the materials of a file.
 pub(super) fn read(path: &Path, library: &mut Library, warnings: &mut Warnings) -> Result<(), InputError> {
-    let text = Text::read(path)?;
+    let text = Text::read_lossy(path)?;
     let mut lines = String::new();
     let mut started = false;
     for line in logical_lines(&text.content) {
@@ -169,7 +173,10 @@ fn modelled(material: &tobj::Material, path: &Path, warnings: &mut Warnings) -> 
         0 | 1 => matte,
         3 | 5 | 8 => mirror,
         4 | 9 => Material { dielectric: glass(1.0, tf, Fresnel::Fixed), ..mirror },
-        6 => Material { dielectric: glass(ior, (DVec3::ONE - ks) * tf, Fresnel::Fixed), ..mirror },
+        6 => Material {
+            dielectric: glass(ior, (DVec3::ONE - ks).max(DVec3::ZERO) * tf, Fresnel::Fixed),
+            ..mirror
+        },
         7 => Material { dielectric: glass(ior, tf, Fresnel::Schlick), ..shiny },
         _ => shiny,
     })

@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::path::Path;
 
 pub(super) fn read(path: &Path, wants_materials: bool, warnings: &mut Warnings) -> Result<Mesh, InputError> {
-    let text = Text::read(path)?;
+    let text = Text::read_lossy(path)?;
     let checked = check(&text, wants_materials, warnings)?;
     if checked.faces_have_normals.is_empty() {
         let message = "the file has no faces (`f`), so there is nothing to see";

@@ -112,7 +112,11 @@ impl Pass<'_> {
                 if weight == 0.0 {
                     return Err(self.text.error(arguments[3].1, "the weight w of a vertex must not be 0"));
                 }
-                self.bounds = widened(self.bounds, DVec3::from_slice(&numbers) / weight);
+                let position = DVec3::from_slice(&numbers) / weight;
+                for coordinate in position.to_array() {
+                    number::check(coordinate).map_err(error)?;
+                }
+                self.bounds = widened(self.bounds, position);
                 self.vertices += 1;
             }
             "vn" => {
@@ -129,7 +133,7 @@ impl Pass<'_> {
             "mtllib" if self.wants_materials => self.library(line, offset, warnings)?,
             "usemtl" if self.wants_materials => {
                 let name = line.rest(&self.text.content);
-                if !self.library.names().any(|known| known == name) {
+                if !self.library.has(name) {
                     let meant = did_you_mean(name, self.library.names());
                     let name = number::shortened(name);
                     return Err(error(format!(

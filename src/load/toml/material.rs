@@ -5,6 +5,7 @@ use crate::load::error::{InputError, Warnings};
 use crate::load::number::shortened;
 use crate::load::suggest::did_you_mean;
 use crate::scene::{Dielectric, Fresnel, Material, MaterialId, Rgb};
+use std::collections::BTreeMap;
 
 const KEYS: [&str; 10] = [
     "ambient",
@@ -23,17 +24,17 @@ const KEYS: [&str; 10] = [
 #[derive(Default)]
 pub(super) struct Materials {
     pub(super) list: Vec<Material>,
-    names: Vec<String>,
+    by_name: BTreeMap<String, MaterialId>,
 }
 
 impl Materials {
     /// The material that a value names.
     pub(super) fn named(&self, value: &Value<'_>) -> Result<MaterialId, InputError> {
         let name = value.string()?;
-        match self.names.iter().position(|known| known == name) {
-            Some(index) => Ok(material_id(index)),
+        match self.by_name.get(name) {
+            Some(&id) => Ok(id),
             None => {
-                let meant = did_you_mean(name, self.names.iter().map(String::as_str));
+                let meant = did_you_mean(name, self.by_name.keys().map(String::as_str));
                 let name = shortened(name);
                 Err(value.error(format!(
                     "unknown material \"{name}\"; no [material.{name}] is in this file{meant}"
@@ -58,8 +59,9 @@ pub(super) fn read(root: &Table<'_>, warnings: &mut Warnings) -> Result<Material
     let mut materials = Materials::default();
     let Some(value) = root.get("material") else { return Ok(materials) };
     for entry in value.any_table("[material.NAME]")?.entries() {
+        let id = material_id(materials.list.len());
         materials.list.push(material(&entry.table("[material.NAME]", &KEYS)?, warnings)?);
-        materials.names.push(entry.key().to_owned());
+        materials.by_name.insert(entry.key().to_owned(), id);
     }
     Ok(materials)
 }

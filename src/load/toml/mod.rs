@@ -33,7 +33,7 @@ pub(super) fn load(path: &Path, warnings: &mut Warnings) -> Result<Scene, InputE
     let geometry = shapes::read(&root, &mut materials, warnings)?;
     let camera = match root.get("camera") {
         Some(camera) => camera::read(&camera)?,
-        None => framed(geometry.bounds()).camera,
+        None => framed(path, geometry.bounds())?.camera,
     };
     Ok(Scene { image, render, camera, ambient, lights, materials: materials.list, geometry })
 }
