@@ -117,11 +117,16 @@ mod tests {
         assert!(jittered < random / 3.0, "jittered {jittered} against random {random}");
     }
 
+    /// Other programs predict these: worked out step by step with 32-bit arithmetic outside this program.
     #[test]
-    fn random_numbers_follow_the_published_recipe() {
-        // Worked out step by step with 32-bit arithmetic outside this program.
-        assert_eq!(lowbias32(0), 0);
-        assert_eq!(lowbias32(1), 0x688990c0);
-        assert_eq!(random_unit([1, 2, 3, 4, 0]), f64::from(0xa2426541_u32 >> 8) / 16_777_216.0);
+    fn random_samples_follow_the_published_recipe() {
+        assert_eq!((lowbias32(0), lowbias32(1)), (0, 0x688990c0));
+        // Seed 7, x 300, y 21, sample 6 of 4 × 4: p = 2, q = 1.
+        let [xi, eta] = [1102339.0, 1709377.0].map(|random| random / 16_777_216.0);
+        assert_eq!(pattern(Sampling::Random, 4).position(300, 21, 6), [xi, eta]);
+        assert_eq!(
+            pattern(Sampling::Jittered, 4).position(300, 21, 6),
+            [(2.0 + xi) / 4.0, (1.0 + eta) / 4.0]
+        );
     }
 }

@@ -251,6 +251,30 @@ mod tests {
         (scene, edges)
     }
 
+    /// From inside a closed solid every ray ends on it, those aimed in f64 at edges and corners too.
+    #[test]
+    fn no_ray_gets_out_through_an_edge_or_a_corner() {
+        let stop = AtomicBool::new(false);
+        for (center, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-9), (Vec3::new(1e4, -2e4, 3e3), 1.0)] {
+            let (scene, edges) = octahedron(center, size);
+            let tracer = Tracer::new(&scene, &stop);
+            let vertices: Vec<DVec3> =
+                scene.geometry.vertices.iter().map(|vertex| vertex.as_dvec3()).collect();
+            for (step, [a, b]) in edges.iter().cycle().take(24_000).enumerate() {
+                let along = (step % 101) as f64 / 100.0;
+                let target = vertices[*a] + along * (vertices[*b] - vertices[*a]);
+                let aside =
+                    DVec3::new((step as f64).sin(), (step as f64 * 0.7).cos(), (step as f64 * 0.3).sin());
+                let eye = center.as_dvec3() + 0.2 * f64::from(size) * aside;
+                let ray = Ray::new(eye, target - eye, None);
+                assert!(
+                    tracer.hierarchy.closest(&ray).is_some(),
+                    "edge {a} {b} of the solid at {center}, step {step}"
+                );
+            }
+        }
+    }
+
     /// Rays aimed in f64 at edges and corners, as no pixel is: the point hit lies on two faces or more, to rounding, and
     /// none of them may hide from it what stands before all of them.
     #[test]

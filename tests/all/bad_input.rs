@@ -101,6 +101,7 @@ fn toml() {
         ("light without direction", "[[light]]\ndirection = [0, 0, 0]".to_owned()),
         ("mesh that is not there", "[[mesh]]\nfile = \"absent.obj\"".to_owned()),
         ("mesh of another kind", "[[mesh]]\nfile = \"scene.toml\"".to_owned()),
+        ("too small to be framed", sphere("center = [1e6, 1e6, 1e6]\nradius = 1e-3\nmaterial = \"matte\"")),
         ("mesh of scale 0", "[[mesh]]\nfile = \"a.obj\"\nscale = 0".to_owned()),
     ];
     let cases: Vec<(&str, &str)> = cases.iter().map(|(what, content)| (*what, content.as_str())).collect();
@@ -147,6 +148,7 @@ fn obj() {
         ("two coordinates", with("v 1 2\nf 1 2 3")),
         ("NaN", with("v 1 nan 2\nf 1 2 3")),
         ("over 1e18", with("v 1 1e30 2\nf 1 2 3")),
+        ("over 1e18 by its weight", with("v 1 1 1 1e-30\nf 1 2 3")),
         ("unknown keyword", with("vertex 1 2 3")),
         ("unknown material", with("usemtl red\nf 1 2 3")),
         ("library that is not there", with("mtllib absent.mtl\nf 1 2 3")),

@@ -119,7 +119,7 @@ fn the_report_says_what_ran() {
         (&report["engine"], &report["lanes"], &report["threads"]),
         (&"reference".into(), &1.into(), &2.into())
     );
-    assert!(["sse2", "avx2", "avx512", "neon", "scalar"].contains(&report["isa"].as_str().unwrap()));
+    assert!(["sse2", "avx2", "avx512", "neon"].contains(&report["isa"].as_str().unwrap()));
     for kind in ["primary", "shadow", "reflect", "refract"] {
         assert!(report["rays"][kind].is_u64(), "rays.{kind} in {text}");
     }
@@ -196,6 +196,10 @@ fn a_picture_that_cannot_be_written_is_1_before_any_work() {
     assert!(stderr(&output).contains("absent/a.png: cannot be written"), "{}", stderr(&output));
     std::fs::create_dir(place.folder.file("folder.png")).unwrap();
     assert_exit(&place.render("folder.png", &[]), 1);
+    let output = place.render("a.png", &["--json", &place.at("absent/report.json"), "--size", "20000x20000"]);
+    assert_exit(&output, 1);
+    assert_exit(&place.render("a.npy", &["--json", &place.at("a.npy")]), 2);
+    assert_eq!(place.folder.names(), ["folder.png", "scene.toml"]);
 }
 
 #[test]

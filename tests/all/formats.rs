@@ -309,6 +309,69 @@ fn toml_ids_count_spheres_triangles_polygons_and_meshes() {
 }
 
 #[test]
+fn what_is_not_said_has_its_default() {
+    let scene =
+        scene(&[("a.toml", "[[light]]\nposition = [1, 2, 3]\n[material.m]\n[material.glass]\nior = 1.5\n")]);
+    let render = scene.render;
+    assert_eq!((render.max_depth, render.min_weight, render.samples, render.seed), (8, 0.0, 1, 1));
+    assert_eq!(render.sampling, wavelane::scene::Sampling::Regular);
+    assert_eq!((scene.image.background, scene.ambient), (Rgb::ZERO, Rgb::ZERO));
+    assert_eq!(scene.lights, [Light::Point { position: Vec3::new(1.0, 2.0, 3.0), intensity: Rgb::ONE }]);
+    let glass =
+        Dielectric { ior: 1.5, absorption: Rgb::ZERO, transmission: Rgb::ONE, fresnel: Fresnel::Schlick };
+    let plain = Material {
+        ambient: Rgb::ZERO,
+        diffuse: Rgb::ZERO,
+        specular: Rgb::ZERO,
+        shininess: 1.0,
+        mirror: Rgb::ZERO,
+        dielectric: None,
+        casts_shadow: true,
+    };
+    assert_eq!(scene.materials, [Material { dielectric: Some(glass), ..plain }, plain]);
+}
+
+#[test]
+fn polygons_may_leave_their_plane_by_a_thousandth_and_are_warned_about_before() {
+    // Raising one corner of a unit square by h takes its neighbours h/2 off the plane; the extent is √2.
+    let off_plane = |share: f64| {
+        let height = share * 2.0 * 2.0_f64.sqrt();
+        let folder = Folder::new();
+        let toml = format!(
+            "[material.m]\n[[polygon]]\nvertices = [[0, 0, 0], [1, 0, 0], [1, 1, {height}], [0, 1, 0]]\nmaterial = \"m\"\n"
+        );
+        load(&folder.write("a.toml", toml)).ok().map(|loaded| loaded.warnings.len())
+    };
+    let warned = 8.0 / f64::from(1 << 24);
+    for (share, expected) in [
+        (0.0, Some(0)),
+        (0.98 * warned, Some(0)),
+        (1.02 * warned, Some(1)),
+        (0.98e-3, Some(1)),
+        (1.02e-3, None),
+    ] {
+        assert_eq!(off_plane(share), expected, "{share:e} of the extent off the plane");
+    }
+}
+
+#[test]
+fn the_largest_image_is_2_to_the_31_pixels() {
+    assert_eq!(scene(&[("a.toml", "[image]\nsize = [65536, 32768]\n")]).image.height, 32768);
+}
+
+#[test]
+fn names_may_hold_a_number_sign_and_comments_any_bytes() {
+    let folder = Folder::new();
+    folder.write(
+        "a.obj",
+        b"# caf\xe9\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl Mat #1\nf 1 2 3 # first\n",
+    );
+    folder.write("a.mtl", b"newmtl Mat #1\nKd 1 0 0 # r\xf6t\nnewmtl Mat #2\nKd 0 1 0\n");
+    let scene = load(&folder.file("a.obj")).unwrap().scene;
+    assert_eq!(scene.materials[scene.geometry.triangles[0].material.0 as usize].diffuse, Rgb::X);
+}
+
+#[test]
 fn an_empty_scene_is_legal() {
     for (name, content) in [("a.toml", ""), ("a.nff", "# nothing\n")] {
         let scene = scene(&[(name, content)]);
