@@ -34,7 +34,7 @@ pub(crate) fn write(
     written
 }
 
-/// Says early what [`write`] would run into, so that no long work ends in a file that cannot be written.
+/// Says early what [`write()`] would run into, so that no long work ends in a file that cannot be written.
 pub(crate) fn probe(path: &Path) -> io::Result<()> {
     if fs::metadata(path).is_ok_and(|meta| !meta.is_file() && !meta.is_dir()) {
         return OpenOptions::new().write(true).open(path).map(drop);
