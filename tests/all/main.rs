@@ -3,8 +3,7 @@
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::cast_possible_truncation,
-    clippy::print_stderr,
-    reason = "a test may end where it finds what it does not expect, and says out loud what it skips"
+    reason = "a test may end where it finds what it does not expect"
 )]
 
 mod bad_input;

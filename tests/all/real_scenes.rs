@@ -1,6 +1,7 @@
 //! Scenes that the project did not write: Haines' SPD and the Stanford bunny, in the folder that WAVELANE_SCENES names.
 
 use crate::support::render_whole;
+use std::io::Write;
 use std::path::PathBuf;
 use wavelane::load::load;
 use wavelane::rays::RayCounts;
@@ -8,15 +9,20 @@ use wavelane::rays::RayCounts;
 /// A file of the folder; none, said out loud, where it is absent.
 fn file(name: &str) -> Option<PathBuf> {
     let Some(folder) = std::env::var_os("WAVELANE_SCENES") else {
-        eprintln!("skipped: {name}: WAVELANE_SCENES names no folder of scenes");
+        skipped(&format!("{name}: WAVELANE_SCENES names no folder of scenes"));
         return None;
     };
     let path = PathBuf::from(folder).join(name);
     if !path.is_file() {
-        eprintln!("skipped: {} is absent", path.display());
+        skipped(&format!("{} is absent", path.display()));
         return None;
     }
     Some(path)
+}
+
+/// Said to stderr itself, since what a passing test prints is not shown.
+fn skipped(what: &str) {
+    writeln!(std::io::stderr(), "skipped: {what}").unwrap();
 }
 
 #[test]
