@@ -70,9 +70,9 @@ impl Hierarchy {
     /// The hit of smallest t > 0; of equal ones that of the smallest id. Surfaces that coincide are met at one t, but each
     /// rounds it in its own way, so what differs by no more than rounding counts as equal.
     pub(super) fn closest(&self, ray: &Ray) -> Option<Hit<'_>> {
-        // Whatever may equal the nearest is still looked at, the coarsest surface at a grazing angle included.
+        // Whatever may equal the nearest is still looked at: the coarsest surface at the worst angle included.
         let scale = (self.extent + ray.origin.abs().max_element()) / ray.direction.abs().max_element();
-        let slack = 1024.0 * ROUNDING * scale;
+        let slack = 2.0 * ROUNDING * scale / Meeting::LEAST_COSINE;
         let mut nearest: Option<Meeting> = None;
         let mut candidates: Vec<(Meeting, &Primitive)> = Vec::new();
         self.visit(ray, f64::INFINITY, |primitive| {

@@ -42,6 +42,12 @@ pub(super) enum Shape {
     },
 }
 
+impl Meeting {
+    /// Nearer to edge-on, a sphere's limb bends away and a face is no wider than a line, and t is bounded by that. Here
+    /// the rounding is 2⁻²⁶ of the coordinates, still below what f32 coordinates can tell apart.
+    pub(super) const LEAST_COSINE: f64 = 1.0 / (1 << 20) as f64;
+}
+
 /// What a surface is like at a hit, seen from outside.
 pub(super) struct Surface {
     pub(super) point: DVec3,
@@ -98,7 +104,9 @@ impl Primitive {
         let departure = ray.departure.filter(|departure| departure.from == self.id);
         let rounding = Surface::ROUNDING * (self.extent + ray.origin.abs().max_element());
         let meeting = |t: f64, normal: DVec3| {
-            let uncertainty = rounding / normal.dot(ray.direction).abs();
+            let length = ray.direction.length();
+            let cosine = (normal.dot(ray.direction).abs() / length).max(Meeting::LEAST_COSINE);
+            let uncertainty = rounding / (cosine * length);
             let least = if ray.departure.is_some() && departure.is_none() { uncertainty } else { 0.0 };
             (t > least).then_some(Meeting { t, uncertainty })
         };

@@ -20,9 +20,10 @@ fn file(name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// Said to stderr itself, since what a passing test prints is not shown.
+/// Said to stderr itself: what a passing test prints with a macro is not shown.
 fn skipped(what: &str) {
-    writeln!(std::io::stderr(), "skipped: {what}").unwrap();
+    let mut stderr = std::io::stderr().lock();
+    writeln!(stderr, "skipped: {what}").unwrap();
 }
 
 #[test]
