@@ -36,9 +36,3 @@ pub(super) fn framed(path: &Path, bounds: Option<(DVec3, DVec3)>) -> Result<Fram
     let light = Light::Point { position: at([-1.0, 2.0, 1.5]), intensity: Rgb::ONE };
     Ok(Framing { camera, light })
 }
-
-/// Bounds that also hold a point.
-pub(super) fn widened(bounds: Option<(DVec3, DVec3)>, point: DVec3) -> Option<(DVec3, DVec3)> {
-    let (low, high) = bounds.unwrap_or((point, point));
-    Some((low.min(point), high.max(point)))
-}

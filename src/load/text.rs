@@ -32,34 +32,25 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Reads a file that must be UTF-8; a byte order mark is passed over.
+    /// Reads a file that must be UTF-8.
     pub(super) fn read(path: &Path) -> Result<Self, InputError> {
-        let bytes = read_bytes(path)?;
-        let (bytes, error) = match String::from_utf8(bytes) {
-            Ok(mut content) => {
-                if content.starts_with('\u{feff}') {
-                    content.drain(..'\u{feff}'.len_utf8());
-                }
-                return Ok(Self { path: path.to_owned(), content });
-            }
-            Err(error) => {
-                let at = error.utf8_error();
-                (error.into_bytes(), at)
-            }
-        };
-        let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).into_owned();
-        let bad = bytes[error.valid_up_to()];
-        let text = Self { path: path.to_owned(), content: good };
-        let end = text.content.len();
-        Err(text.error(end, format!("byte 0x{bad:02x} is not UTF-8 text; is this a binary file?")))
+        String::from_utf8(read_bytes(path)?).map(|content| Self::new(path, &content)).map_err(|error| {
+            let (good, bad) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+            let text = Self::new(path, &String::from_utf8_lossy(good));
+            let message = format!("byte 0x{:02x} is not UTF-8 text; is this a binary file?", bad[0]);
+            text.error(text.content.len(), message)
+        })
     }
 
     /// Reads a file whose comments may be in any encoding; outside them what is not UTF-8 means nothing to any format.
     pub(super) fn read_lossy(path: &Path) -> Result<Self, InputError> {
-        let bytes = read_bytes(path)?;
-        let content = String::from_utf8_lossy(&bytes);
-        let content = content.strip_prefix('\u{feff}').unwrap_or(&content).to_owned();
-        Ok(Self { path: path.to_owned(), content })
+        Ok(Self::new(path, &String::from_utf8_lossy(&read_bytes(path)?)))
+    }
+
+    /// A byte order mark is passed over.
+    fn new(path: &Path, content: &str) -> Self {
+        let content = content.strip_prefix('\u{feff}').unwrap_or(content);
+        Self { path: path.to_owned(), content: content.to_owned() }
     }
 
     /// Line and column of a byte offset.

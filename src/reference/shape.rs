@@ -142,6 +142,7 @@ impl Primitive {
                 }
             }
             Shape::Triangle { vertices: [a, b, c], normal, normals } => {
+                // The same test found the hit, so there are weights; the middle only stands in for what cannot be.
                 let weights = triangle(ray, &[*a, *b, *c]).map_or([1.0 / 3.0; 3], |hit| hit.barycentric);
                 let mean = |of: &[DVec3; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
                 Surface {

@@ -219,7 +219,7 @@ mod tests {
     use crate::scene::{Camera, Geometry, ImageSettings, MaterialId, Projection, RenderSettings, Rgb};
     use glam::Vec3;
 
-    /// A closed convex solid, an octahedron, off any grid, and a light far from it.
+    /// A closed convex solid, an octahedron off any grid, and its edges.
     fn octahedron(center: Vec3, size: f32) -> (Scene, Vec<[usize; 2]>) {
         let axes = [Vec3::new(0.9, 0.3, -0.2), Vec3::new(-0.3, 0.8, 0.4), Vec3::new(0.25, -0.35, 0.85)];
         let corners =
@@ -251,62 +251,51 @@ mod tests {
         (scene, edges)
     }
 
-    /// From inside a closed solid every ray ends on it, those aimed in f64 at edges and corners too.
-    #[test]
-    fn no_ray_gets_out_through_an_edge_or_a_corner() {
+    /// Runs a test on points of the edges and corners of solids of several places and sizes, in f64, as no pixel aims:
+    /// it gets a tracer, the solid's centre and size, a count and the point.
+    fn at_edges(points_a_solid: usize, mut test: impl FnMut(&Tracer<'_>, DVec3, f64, f64, DVec3)) {
         let stop = AtomicBool::new(false);
         for (center, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-9), (Vec3::new(1e4, -2e4, 3e3), 1.0)] {
             let (scene, edges) = octahedron(center, size);
             let tracer = Tracer::new(&scene, &stop);
-            let vertices: Vec<DVec3> =
-                scene.geometry.vertices.iter().map(|vertex| vertex.as_dvec3()).collect();
-            for (step, [a, b]) in edges.iter().cycle().take(24_000).enumerate() {
-                let along = (step % 101) as f64 / 100.0;
-                let target = vertices[*a] + along * (vertices[*b] - vertices[*a]);
-                let aside =
-                    DVec3::new((step as f64).sin(), (step as f64 * 0.7).cos(), (step as f64 * 0.3).sin());
-                let eye = center.as_dvec3() + 0.2 * f64::from(size) * aside;
-                let ray = Ray::new(eye, target - eye, None);
-                assert!(
-                    tracer.hierarchy.closest(&ray).is_some(),
-                    "edge {a} {b} of the solid at {center}, step {step}"
-                );
+            let vertex = |index: usize| scene.geometry.vertices[index].as_dvec3();
+            for (step, [a, b]) in edges.iter().cycle().take(points_a_solid).enumerate() {
+                let point = vertex(*a) + (step % 101) as f64 / 100.0 * (vertex(*b) - vertex(*a));
+                test(&tracer, center.as_dvec3(), f64::from(size), step as f64, point);
             }
         }
     }
 
-    /// Rays aimed in f64 at edges and corners, as no pixel is: the point hit lies on two faces or more, to rounding, and
-    /// none of them may hide from it what stands before all of them.
+    /// From inside a closed solid every ray ends on it.
+    #[test]
+    fn no_ray_gets_out_through_an_edge_or_a_corner() {
+        at_edges(24_000, |tracer, center, size, step, point| {
+            let aside = DVec3::new(step.sin(), (step * 0.7).cos(), (step * 0.3).sin());
+            let eye = center + 0.2 * size * aside;
+            let hit = tracer.hierarchy.closest(&Ray::new(eye, point - eye, None));
+            assert!(hit.is_some(), "at {point} of the solid at {center}, step {step}");
+        });
+    }
+
+    /// The point hit lies on two faces or more, to rounding, and none of them may hide from it what stands before all of
+    /// them: from a point of a convex solid that it sees, the eye is not hidden.
     #[test]
     fn a_point_on_an_edge_is_not_shadowed_by_the_faces_that_meet_there() {
-        let stop = AtomicBool::new(false);
         let mut hits = 0;
-        for (center, size) in [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-9), (Vec3::new(1e4, -2e4, 3e3), 1.0)] {
-            let (scene, edges) = octahedron(center, size);
-            let tracer = Tracer::new(&scene, &stop);
-            let vertices: Vec<DVec3> =
-                scene.geometry.vertices.iter().map(|vertex| vertex.as_dvec3()).collect();
-            for (step, [a, b]) in edges.iter().cycle().take(6000).enumerate() {
-                let along = (step % 101) as f64 / 100.0;
-                let target = vertices[*a] + along * (vertices[*b] - vertices[*a]);
-                let angles = DVec2::new(step as f64 * 0.37, step as f64 * 0.11);
-                let aside = DVec3::new(angles.x.sin(), angles.y.cos(), (angles.x + angles.y).sin());
-                let eye = center.as_dvec3() + 20.0 * f64::from(size) * aside;
-                let ray = Ray::new(eye, (target - eye).normalize(), None);
-                let Some(hit) = tracer.hierarchy.closest(&ray) else { continue };
-                let shading = tracer.shading(&ray, &hit);
-                if !shading.entering {
-                    continue; // on the silhouette a face that is seen from inside may come first
-                }
+        at_edges(6000, |tracer, center, size, step, point| {
+            let (x, y) = (step * 0.37, step * 0.11);
+            let eye = center + 20.0 * size * DVec3::new(x.sin(), y.cos(), (x + y).sin());
+            let ray = Ray::new(eye, (point - eye).normalize(), None);
+            // A ray at the silhouette may miss, or meet a face first that is seen from inside.
+            let Some(hit) = tracer.hierarchy.closest(&ray) else { return };
+            let shading = tracer.shading(&ray, &hit);
+            if shading.entering {
                 hits += 1;
-                // From a point of a convex solid that it sees, the eye is not hidden.
                 let back = shading.leave(true, |origin| eye - origin);
-                assert!(
-                    !tracer.hierarchy.occluded(&back, 1.0),
-                    "edge {a} {b} of the solid at {center}, step {step}"
-                );
+                let hidden = tracer.hierarchy.occluded(&back, 1.0);
+                assert!(!hidden, "at {point} of the solid at {center}, step {step}");
             }
-        }
+        });
         assert!(hits > 9000, "{hits} rays hit");
     }
 }

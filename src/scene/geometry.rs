@@ -205,10 +205,7 @@ impl Geometry {
             [center - radius, center + radius]
         });
         let vertices = self.vertices.iter().map(|vertex| vertex.as_dvec3());
-        spheres.chain(vertices).fold(None, |bounds, point| match bounds {
-            None => Some((point, point)),
-            Some((low, high)) => Some((point.min(low), point.max(high))),
-        })
+        spheres.chain(vertices).fold(None, widened)
     }
 
     fn take_id(&mut self) -> Result<PrimitiveId, GeometryProblem> {
@@ -219,6 +216,12 @@ impl Geometry {
         self.next_id += 1;
         Ok(PrimitiveId(id))
     }
+}
+
+/// Bounds that also hold a point.
+pub(crate) fn widened(bounds: Option<(DVec3, DVec3)>, point: DVec3) -> Option<(DVec3, DVec3)> {
+    let (low, high) = bounds.unwrap_or((point, point));
+    Some((low.min(point), high.max(point)))
 }
 
 fn append(column: &mut Vec<Vec3>, more: impl IntoIterator<Item = Vec3>) -> Result<u32, GeometryProblem> {

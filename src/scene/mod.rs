@@ -9,8 +9,8 @@ mod material;
 mod settings;
 
 pub use camera::{Camera, CameraProblem, Projection, Window};
-pub(crate) use geometry::polygon_normal;
 pub use geometry::{Added, Geometry, GeometryProblem, Polygon, PrimitiveId, Sphere, Triangle};
+pub(crate) use geometry::{polygon_normal, widened};
 pub use material::{Dielectric, Fresnel, Light, Material, MaterialId};
 pub use settings::{ImageSettings, MAX_COORDINATE, MAX_PIXELS, RenderSettings, Sampling};
 

@@ -7,10 +7,10 @@
 use super::lines::{LogicalLine, logical_lines};
 use super::mtl::{self, Library};
 use crate::load::error::{InputError, Warnings};
-use crate::load::framing::widened;
 use crate::load::number;
 use crate::load::suggest::did_you_mean;
 use crate::load::text::Text;
+use crate::scene::widened;
 use glam::DVec3;
 
 /// What the library gets to read, and what it would not say.
@@ -144,8 +144,7 @@ impl Pass<'_> {
             }
             // Texture coordinates, names of objects and groups, smoothing and the choice of materials made elsewhere.
             "vt" | "vp" | "o" | "g" | "s" | "mg" | "maplib" | "usemap" | "mtllib" | "usemtl" | "bevel"
-            | "c_interp" | "d_interp" | "lod" => {}
-            "shadow_obj" | "trace_obj" => {}
+            | "c_interp" | "d_interp" | "lod" | "shadow_obj" | "trace_obj" => {}
             "l" | "p" | "cstype" | "deg" | "bmat" | "step" | "curv" | "curv2" | "surf" | "parm" | "trim"
             | "hole" | "scrv" | "sp" | "end" | "con" | "ctech" | "stech" | "call" | "csh" => {
                 self.text.warn(warnings, keyword, offset, || {

@@ -2,9 +2,9 @@
 
 use super::Mesh;
 use crate::load::error::{InputError, Place};
-use crate::load::framing::widened;
 use crate::load::number;
 use crate::load::text::read_bytes;
+use crate::scene::widened;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType};
