@@ -43,6 +43,11 @@ pub(super) enum Shape {
 }
 
 impl Meeting {
+    /// Bound on the rounding of a hit point and of the test of a face that touches it, as a share of the coordinates that
+    /// take part: about twenty operations of 2⁻⁵³ each, rounded up. Coordinates come as f32, so a scene cannot hold a
+    /// detail that is nearly as small.
+    pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 46) as f64;
+
     /// Nearer to edge-on, a sphere's limb bends away and a face is no wider than a line, and t is bounded by that. Here
     /// the rounding is 2⁻²⁶ of the coordinates, still below what f32 coordinates can tell apart.
     pub(super) const LEAST_COSINE: f64 = 1.0 / (1 << 20) as f64;
@@ -55,15 +60,6 @@ pub(super) struct Surface {
     pub(super) geometric_normal: DVec3,
     /// n_s on the side of n_g, unit.
     pub(super) shading_normal: DVec3,
-    /// More than rounding can have moved the point, and a neighbour's surface, along the normal.
-    pub(super) uncertainty: f64,
-}
-
-impl Surface {
-    /// Bound on the rounding of a hit point and of the test of a neighbouring face, as a share of the coordinates that
-    /// take part: about twenty operations of 2⁻⁵³ each, rounded up. Coordinates come as f32, so a scene cannot hold a
-    /// detail that is nearly as small.
-    pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 46) as f64;
 }
 
 impl Primitive {
@@ -102,7 +98,7 @@ impl Primitive {
     /// than rounding is 0: this primitive touches that surface there, however large either may be.
     pub(super) fn intersect(&self, ray: &Ray) -> Option<Meeting> {
         let departure = ray.departure.filter(|departure| departure.from == self.id);
-        let rounding = Surface::ROUNDING * (self.extent + ray.origin.abs().max_element());
+        let rounding = Meeting::ROUNDING * (self.extent + ray.origin.abs().max_element());
         let meeting = |t: f64, normal: DVec3| {
             let length = ray.direction.length();
             let cosine = (normal.dot(ray.direction).abs() / length).max(Meeting::LEAST_COSINE);
@@ -129,7 +125,6 @@ impl Primitive {
 
     /// The surface at the hit that [`Self::intersect`] found.
     pub(super) fn surface(&self, ray: &Ray, t: f64) -> Surface {
-        let uncertainty = Surface::ROUNDING * self.extent;
         // Points are put back onto the primitive, since origin + t·direction is off it by the rounding of t.
         match &self.shape {
             Shape::Sphere { center, radius } => {
@@ -138,7 +133,6 @@ impl Primitive {
                     point: *center + *radius * normal,
                     geometric_normal: normal,
                     shading_normal: normal,
-                    uncertainty,
                 }
             }
             Shape::Triangle { vertices: [a, b, c], normal, normals } => {
@@ -152,7 +146,6 @@ impl Primitive {
                         Some(normals) => on_side_of(*normal, mean(normals)),
                         None => *normal,
                     },
-                    uncertainty,
                 }
             }
             Shape::Polygon { vertices, normal, normals } => {
@@ -165,7 +158,6 @@ impl Primitive {
                         Some(normals) => on_side_of(*normal, patch_normal(point, vertices, normals, *normal)),
                         None => *normal,
                     },
-                    uncertainty,
                 }
             }
         }

@@ -4,7 +4,7 @@ use super::camera::View;
 use super::hierarchy::{Hierarchy, Hit};
 use super::optics::{Boundary, beer, mirrored};
 use super::ray::{Departure, Ray};
-use super::shape::{Primitive, Surface};
+use super::shape::{Meeting, Primitive, Surface};
 use crate::film::SamplePattern;
 use crate::rays::RayCounts;
 use crate::scene::{Light, Material, Scene};
@@ -95,7 +95,7 @@ impl<'a> Tracer<'a> {
             } else {
                 counts.refract += 1;
             }
-            let ray = shading.leave(child.reflected, |_| child.direction);
+            let ray = shading.leave(child.reflected, child.direction);
             sum += child.share * self.radiance(&ray, child_weight, depth + 1, counts);
         }
         attenuation * sum
@@ -158,14 +158,14 @@ impl<'a> Tracer<'a> {
         match *light {
             Light::Point { position, .. } => {
                 let light = position.as_dvec3();
-                let ray = shading.leave(true, |origin| light - origin);
+                let ray = shading.leave(true, light - shading.surface.point);
                 // Rounding must not put a surface that the light lies on in front of the light.
                 let coordinates = light.abs().max(ray.origin.abs()).max_element();
-                let uncertainty = Surface::ROUNDING * coordinates / ray.direction.length();
+                let uncertainty = Meeting::ROUNDING * coordinates / ray.direction.length();
                 !self.hierarchy.occluded(&ray, 1.0 - uncertainty)
             }
             Light::Directional { direction, .. } => {
-                let ray = shading.leave(true, |_| -direction.as_dvec3());
+                let ray = shading.leave(true, -direction.as_dvec3());
                 !self.hierarchy.occluded(&ray, f64::INFINITY)
             }
         }
@@ -203,13 +203,10 @@ impl Shading<'_> {
         [Some(Child { direction: direction.normalize(), share: reflected_share, reflected: true }), refracted]
     }
 
-    /// A ray that leaves the surface, on the side the ray came from or on the other. It starts as far off the surface as
-    /// rounding could have moved either that or a neighbour that touches it here.
-    fn leave(&self, same_side: bool, direction_from: impl FnOnce(DVec3) -> DVec3) -> Ray {
-        let side = if same_side { self.facing_geometric } else { -self.facing_geometric };
-        let origin = self.surface.point + self.surface.uncertainty * side;
+    /// A ray that leaves the surface, on the side the ray came from or on the other.
+    fn leave(&self, same_side: bool, direction: DVec3) -> Ray {
         let inward = self.entering != same_side;
-        Ray::new(origin, direction_from(origin), Some(Departure { from: self.primitive.id, inward }))
+        Ray::new(self.surface.point, direction, Some(Departure { from: self.primitive.id, inward }))
     }
 }
 
@@ -291,7 +288,7 @@ mod tests {
             let shading = tracer.shading(&ray, &hit);
             if shading.entering {
                 hits += 1;
-                let back = shading.leave(true, |origin| eye - origin);
+                let back = shading.leave(true, eye - shading.surface.point);
                 let hidden = tracer.hierarchy.occluded(&back, 1.0);
                 assert!(!hidden, "at {point} of the solid at {center}, step {step}");
             }
