@@ -14,11 +14,12 @@
 //!
 //! ```no_run
 //! use std::sync::atomic::AtomicBool;
-//! use wavelane::{film, load, render};
+//! use wavelane::{film, lanes, load, render};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let scene = load::load("scenes/glass.toml".as_ref())?.scene;
 //! let options = render::RenderOptions {
+//!     engine: render::Engine::Wavefront { width: lanes::Width::BEST, batch: render::DEFAULT_BATCH },
 //!     region: film::Region::whole(scene.image.width, scene.image.height),
 //!     threads: 0,
 //!     on_progress: &|_| {},
@@ -32,11 +33,16 @@
 
 pub mod cli;
 pub mod film;
+mod kernel;
+pub mod lanes;
 pub mod load;
 mod math;
 pub mod measure;
+pub mod prepare;
 pub mod rays;
 pub mod reference;
 pub mod render;
 pub mod scene;
+mod traverse;
+mod wavefront;
 mod whole_file;

@@ -1,16 +1,39 @@
 //! Renders a region of a scene: makes the scene ready, spreads pixels over threads, counts rays, and stops when told to.
 
 use crate::film::{Image, Region};
+use crate::lanes::{self, Single, Width};
+use crate::measure::WavefrontReport;
+use crate::prepare::{PrepareError, Prepared};
 use crate::rays::RayCounts;
 use crate::reference::Tracer;
 use crate::scene::Scene;
+use crate::wavefront::{Statistics, TileGrid, Worker};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use thiserror::Error;
 
+pub use crate::wavefront::DEFAULT_BATCH;
+
+/// What traces the rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Engine {
+    /// The scalar f64 reference, one pixel at a time.
+    Reference,
+    /// The wavefront engine.
+    Wavefront {
+        /// Lanes of its kernels; they do not change the picture.
+        width: Width,
+        /// Rays of a batch, rounded up to a multiple of 64; they do not change the picture either.
+        batch: usize,
+    },
+}
+
 /// How to render, as opposed to what.
 pub struct RenderOptions<'a> {
+    /// What traces the rays.
+    pub engine: Engine,
     /// The part of the image to render.
     pub region: Region,
     /// Worker threads; 0 for one a core.
@@ -33,6 +56,8 @@ pub struct Rendered {
     pub prepare_seconds: f64,
     /// Wall-clock time to trace all rays.
     pub trace_seconds: f64,
+    /// What the stages of the wavefront engine did; none for the reference.
+    pub wavefront: Option<WavefrontReport>,
 }
 
 /// Why there is no picture.
@@ -51,6 +76,9 @@ pub enum RenderError {
     /// The picture does not fit.
     #[error("there is not enough memory for {0} pixels; render it in crops (--crop)")]
     Memory(u64),
+    /// The scene does not fit.
+    #[error(transparent)]
+    Prepare(#[from] PrepareError),
     /// No threads to be had.
     #[error("threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -59,7 +87,7 @@ pub enum RenderError {
     Stopped,
 }
 
-/// Renders with the f64 reference.
+/// Renders a region of a scene.
 ///
 /// # Errors
 /// A region outside the image, too little memory, or a render that was told to stop.
@@ -68,21 +96,36 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
     if !region.fits(size.width, size.height) {
         return Err(RenderError::Region { region, width: size.width, height: size.height });
     }
-    let mut image = Image::black(&region).map_err(|_| RenderError::Memory(region.pixels()))?;
+    let image = Image::black(&region).map_err(|_| RenderError::Memory(region.pixels()))?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    match options.engine {
+        Engine::Reference => with_reference(scene, options, &pool, image),
+        Engine::Wavefront { width, batch } => {
+            let batch = batch.max(1).next_multiple_of(64);
+            with_wavefront(scene, options, &pool, image, width, batch)
+        }
+    }
+}
 
+fn with_reference(
+    scene: &Scene,
+    options: &RenderOptions<'_>,
+    pool: &rayon::ThreadPool,
+    mut image: Image,
+) -> Result<Rendered, RenderError> {
     let start = Instant::now();
     let tracer = Tracer::new(scene, options.stop);
     let prepare_seconds = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
-    let rays = pool.install(|| trace(&tracer, options, &mut image)).ok_or(RenderError::Stopped)?;
+    let rays = pool.install(|| trace_pixels(&tracer, options, &mut image)).ok_or(RenderError::Stopped)?;
     let trace_seconds = start.elapsed().as_secs_f64();
-    Ok(Rendered { image, rays, threads: pool.current_num_threads(), prepare_seconds, trace_seconds })
+    let threads = pool.current_num_threads();
+    Ok(Rendered { image, rays, threads, prepare_seconds, trace_seconds, wavefront: None })
 }
 
 /// Fills the image in short runs of pixels, so that the last thread to finish is not long alone; none if told to stop.
-fn trace(tracer: &Tracer<'_>, options: &RenderOptions<'_>, image: &mut Image) -> Option<RayCounts> {
+fn trace_pixels(tracer: &Tracer<'_>, options: &RenderOptions<'_>, image: &mut Image) -> Option<RayCounts> {
     const RUN: usize = 64;
     let region = options.region;
     let width = region.width() as usize;
@@ -105,6 +148,88 @@ fn trace(tracer: &Tracer<'_>, options: &RenderOptions<'_>, image: &mut Image) ->
         a += b;
         Some(a)
     })
+}
+
+fn with_wavefront(
+    scene: &Scene,
+    options: &RenderOptions<'_>,
+    pool: &rayon::ThreadPool,
+    image: Image,
+    width: Width,
+    batch: usize,
+) -> Result<Rendered, RenderError> {
+    let start = Instant::now();
+    let prepared = pool.install(|| Prepared::new(scene))?;
+    let prepare_seconds = start.elapsed().as_secs_f64();
+
+    let start = Instant::now();
+    let tiles = TiledRender {
+        prepared: &prepared,
+        grid: TileGrid::new(options.region, &prepared, batch),
+        batch,
+        options,
+        next: AtomicU64::new(0),
+        pixels_done: AtomicU64::new(0),
+        image: Mutex::new(image),
+    };
+    // One worker a thread, each with queues of its own.
+    let workers = pool.broadcast(|_| width.run(RunWorker(&tiles)));
+    let trace_seconds = start.elapsed().as_secs_f64();
+    if options.stop.load(Ordering::Relaxed) {
+        return Err(RenderError::Stopped);
+    }
+    let mut statistics = Statistics::default();
+    let mut queue_bytes = 0;
+    for (of_worker, bytes) in &workers {
+        statistics += of_worker;
+        queue_bytes = queue_bytes.max(*bytes);
+    }
+    let report = WavefrontReport::new(&statistics, &prepared, queue_bytes);
+    Ok(Rendered {
+        image: tiles.image.into_inner().unwrap_or_else(PoisonError::into_inner),
+        rays: statistics.rays,
+        threads: pool.current_num_threads(),
+        prepare_seconds,
+        trace_seconds,
+        wavefront: Some(report),
+    })
+}
+
+/// A render that several workers take tiles of.
+struct TiledRender<'a> {
+    prepared: &'a Prepared<'a>,
+    grid: TileGrid,
+    batch: usize,
+    options: &'a RenderOptions<'a>,
+    /// The tile to be taken next.
+    next: AtomicU64,
+    pixels_done: AtomicU64,
+    image: Mutex<Image>,
+}
+
+/// One worker, for lanes of any width: what it has done, and the bytes of its queues.
+struct RunWorker<'a>(&'a TiledRender<'a>);
+
+impl lanes::Job for RunWorker<'_> {
+    type Output = (Statistics, usize);
+
+    fn run<F: Single>(self) -> Self::Output {
+        let RunWorker(render) = self;
+        let mut worker = Worker::new(render.prepared, render.batch, render.options.stop);
+        loop {
+            let index = render.next.fetch_add(1, Ordering::Relaxed);
+            if index >= render.grid.count() || render.options.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            let pixels = worker.tile::<F>(&render.grid, index);
+            let tile = render.grid.tile(index);
+            render.image.lock().unwrap_or_else(PoisonError::into_inner).paste(&pixels, &tile, &render.options.region);
+            let done = render.pixels_done.fetch_add(tile.pixels(), Ordering::Relaxed) + tile.pixels();
+            (render.options.on_progress)(done);
+        }
+        let bytes = worker.bytes();
+        (worker.statistics, bytes)
+    }
 }
 
 /// Columns and rows are below 2³².

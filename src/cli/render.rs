@@ -5,7 +5,8 @@ use super::{Failure, interrupt, output};
 use crate::film::{self, BitDepth, Region};
 use crate::load;
 use crate::measure::{Isa, RenderReport, Seconds};
-use crate::render::{RenderOptions, Rendered, render};
+use crate::lanes::Width;
+use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -19,9 +20,9 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// What traces the rays
-    #[arg(long, value_enum, default_value = "reference")]
+    #[arg(long, value_enum, default_value = "simd")]
     engine: Engine,
-    /// Rays that the kernels of the simd engine take at once
+    /// Lanes of the simd engine's kernels; they do not change the picture [default: the widest that pays]
     #[arg(long, value_name = "N", value_parser = ["4", "8", "16"])]
     lanes: Option<String>,
     /// Worker threads [default: one a core]
@@ -58,12 +59,22 @@ pub(super) struct Arguments {
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum Engine {
-    /// Wavefront, SIMD lanes (not built yet)
+    /// Wavefront, SIMD lanes
     Simd,
-    /// Wavefront, one lane (not built yet)
+    /// Wavefront, one lane
     Scalar,
     /// Recursive, f64, from the textbook
     Reference,
+}
+
+impl Engine {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Simd => "simd",
+            Self::Scalar => "scalar",
+            Self::Reference => "reference",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -104,12 +115,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.progress, region.pixels());
     let rendered = interrupt::watched(|stop| {
         let options = RenderOptions {
+            engine: engine(arguments),
             region,
             threads: arguments.threads.map_or(0, usize::from),
             on_progress: &|done| progress.report(done),
             stop,
         };
-        render(scene, &options)
+        render::render(scene, &options)
     });
     progress.finish();
     let rendered = rendered?;
@@ -133,16 +145,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// What clap cannot see in one argument alone.
 fn check_usage(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.engine != Engine::Reference {
-        let name =
-            arguments.engine.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned());
-        return Err(Failure::Usage(format!("the {name} engine is not built yet; use --engine reference")));
-    }
-    if arguments.lanes.is_some() {
+    if arguments.lanes.is_some() && arguments.engine != Engine::Simd {
         output::diagnostic(&"warning: --lanes belongs to the simd engine and changes nothing here");
     }
     film::Format::of(&arguments.output)?;
     Ok(())
+}
+
+fn engine(arguments: &Arguments) -> render::Engine {
+    let width = match (arguments.engine, arguments.lanes.as_deref()) {
+        (Engine::Reference, _) => return render::Engine::Reference,
+        (Engine::Scalar, _) => Width::One,
+        (Engine::Simd, Some("4")) => Width::Four,
+        (Engine::Simd, Some("8")) => Width::Eight,
+        (Engine::Simd, Some("16")) => Width::Sixteen,
+        (Engine::Simd, _) => Width::BEST,
+    };
+    render::Engine::Wavefront { width, batch: render::DEFAULT_BATCH }
 }
 
 /// The command line's settings take the place of the scene's.
@@ -168,8 +187,11 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         version: env!("CARGO_PKG_VERSION"),
         scene: arguments.scene.display().to_string(),
         output: arguments.output.display().to_string(),
-        engine: "reference",
-        lanes: 1,
+        engine: arguments.engine.name(),
+        lanes: match engine(arguments) {
+            render::Engine::Reference => 1,
+            render::Engine::Wavefront { width, .. } => width.lanes(),
+        },
         isa: Isa::BUILT_FOR,
         threads: rendered.threads,
         size: [scene.image.width, scene.image.height],
@@ -180,5 +202,6 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         primitives: scene.geometry.primitive_count(),
         rays: rendered.rays,
         seconds,
+        wavefront: rendered.wavefront.clone(),
     }
 }

@@ -2,6 +2,8 @@
 
 mod difference;
 mod report;
+mod wavefront;
 
 pub use difference::{Difference, heat_map};
 pub use report::{Isa, RenderReport, Seconds};
+pub use wavefront::{Counters, LanesReport, MemoryReport, StageReport, WavefrontReport};

@@ -1,5 +1,6 @@
 //! What a run did and how long it took, as JSON.
 
+use super::WavefrontReport;
 use crate::rays::RayCounts;
 use serde::Serialize;
 
@@ -36,6 +37,9 @@ pub struct RenderReport {
     pub rays: RayCounts,
     /// Wall-clock time by phase.
     pub seconds: Seconds,
+    /// What the stages of the wavefront engine did; absent for the reference.
+    #[serde(flatten)]
+    pub wavefront: Option<WavefrontReport>,
 }
 
 /// Wall-clock time by phase, seconds.

@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
 use wavelane::film::{Image, Region};
 use wavelane::load::load;
-use wavelane::render::{RenderOptions, Rendered, render};
+use wavelane::render::{Engine, RenderOptions, Rendered, render};
 use wavelane::scene::Scene;
 
 /// A folder that goes away with the value.
@@ -48,6 +48,7 @@ pub(crate) fn scene(toml: &str) -> Scene {
 
 pub(crate) fn render_whole(scene: &Scene) -> Rendered {
     let options = RenderOptions {
+        engine: Engine::Reference,
         region: Region::whole(scene.image.width, scene.image.height),
         threads: 0,
         on_progress: &|_| {},

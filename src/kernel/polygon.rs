@@ -1,0 +1,68 @@
+//! A ray against a planar polygon: the crossing-number test (Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994)
+//! as seen along the ray.
+//!
+//! The polygon is projected along the ray rather than along a coordinate axis. Both keep inside and outside, but axis by
+//! axis each face rounds its own hit point, and rays aimed at the edge of a closed solid get out between two faces; seen
+//! along the ray two faces share the very numbers of their common edge.
+
+use super::ray_space::{Seen, cross};
+use crate::lanes::{Lanes, Mask, Vector};
+
+/// What is known of a polygon after some of its edges.
+#[derive(Clone, Copy)]
+pub(crate) struct Outline<L: Lanes> {
+    /// Whether the edges so far cross the half-line from the ray's foot an odd number of times.
+    pub(crate) odd: L::Mask,
+    /// The smallest and the largest distance of a corner along the ray's third axis.
+    pub(crate) least_z: L,
+    pub(crate) largest_z: L,
+}
+
+impl<L: Lanes> Outline<L> {
+    #[inline(always)]
+    pub(crate) fn new() -> Self
+    where
+        L: Lanes<Scalar = f32>,
+    {
+        Self { odd: L::first(0), least_z: L::splat(f32::INFINITY), largest_z: L::splat(f32::NEG_INFINITY) }
+    }
+
+    /// Takes in an edge. Half open: a corner level with the foot counts as above it, for every edge alike.
+    #[inline(always)]
+    pub(crate) fn add_edge(&mut self, from: &Seen<L>, to: &Seen<L>, zero: L) {
+        let (from_below, to_below) = (from.y.lt(zero), to.y.lt(zero));
+        // Both faces at an edge compute the same but for the sign.
+        let turn = cross(from, to);
+        let upward = from_below & !to_below & turn.gt(zero);
+        let downward = !from_below & to_below & turn.lt(zero);
+        self.odd = self.odd.xor(upward | downward);
+        self.least_z = to.z.min(self.least_z);
+        self.largest_z = to.z.max(self.largest_z);
+    }
+}
+
+/// Where a ray meets a plane.
+pub(crate) struct Meeting<L: Lanes> {
+    pub(crate) t: L,
+    /// False where the plane is seen edge-on.
+    pub(crate) meets: L::Mask,
+    /// Distance of the ray's origin from the plane; of either sign.
+    pub(crate) height: L,
+}
+
+/// A plane through a point. Seen nearly edge-on it is met anywhere, but no point of the polygon is nearer or farther than
+/// all of its corners, so t is kept between theirs.
+#[inline(always)]
+pub(crate) fn meet_plane<L: Lanes>(
+    [origin, direction]: [Vector<L>; 2],
+    [point, normal]: [Vector<L>; 2],
+    corner_ts: [L; 2],
+    zero: L,
+) -> Meeting<L> {
+    let slope = normal.dot(direction);
+    let height = normal.dot(point - origin);
+    let [one, other] = corner_ts;
+    let (least, largest) = (one.min(other), one.max(other));
+    let t = (height / slope).max(least).min(largest);
+    Meeting { t, meets: !slope.eq(zero), height }
+}

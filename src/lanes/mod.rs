@@ -1,0 +1,119 @@
+//! Vector lanes: width as a type. The only place that names `wide`, an instruction set or a width.
+//!
+//! [`Single`] stands for some f32 side by side, [`Double`] for f64; one lane is a plain `f32` or `f64`, and the same
+//! source runs at every width. Lanes have the operations whose bits are equal at every width and in every build, and no
+//! others: + − × ÷ √, comparisons, selection and bits. There is no fused multiply-add, no estimate of a reciprocal and no
+//! sum across lanes.
+
+mod scalar;
+mod vector;
+mod widths;
+mod wide_types;
+
+pub(crate) use vector::Vector;
+pub(crate) use widths::Job;
+pub use widths::Width;
+
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+/// Numbers side by side, worked on at once.
+pub(crate) trait Lanes:
+    Copy
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// f32 or f64.
+    type Scalar: Copy;
+    /// A truth for each lane.
+    type Mask: Mask;
+    /// How many lanes there are.
+    const WIDTH: usize;
+
+    fn splat(value: Self::Scalar) -> Self;
+    /// The first [`Self::WIDTH`] of a slice that has at least as many.
+    fn load(from: &[Self::Scalar]) -> Self;
+    /// Into the first [`Self::WIDTH`] of a slice that has at least as many.
+    fn store(self, to: &mut [Self::Scalar]);
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    fn lt(self, other: Self) -> Self::Mask;
+    fn le(self, other: Self) -> Self::Mask;
+    fn eq(self, other: Self) -> Self::Mask;
+    fn select(mask: Self::Mask, then: Self, otherwise: Self) -> Self;
+    /// Lanes 0 to `count` − 1; all of them where `count` is at least the width.
+    fn first(count: usize) -> Self::Mask;
+
+    fn gt(self, other: Self) -> Self::Mask {
+        other.lt(self)
+    }
+
+    fn ge(self, other: Self) -> Self::Mask {
+        other.le(self)
+    }
+
+    /// `if self < other { self } else { other }`: `other` where one is not a number.
+    fn min(self, other: Self) -> Self {
+        Self::select(self.lt(other), self, other)
+    }
+
+    /// `if self > other { self } else { other }`: `other` where one is not a number.
+    fn max(self, other: Self) -> Self {
+        Self::select(self.gt(other), self, other)
+    }
+}
+
+/// A truth for each lane.
+pub(crate) trait Mask:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
+{
+    /// True where one is and the other is not.
+    fn xor(self, other: Self) -> Self {
+        self ^ other
+    }
+
+    fn any(self) -> bool;
+    /// Bit i is lane i.
+    fn bits(self) -> u32;
+}
+
+/// f32 lanes: what rays and primitives are tested in.
+pub(crate) trait Single: Lanes<Scalar = f32> {
+    /// f64 lanes that fill as many bits.
+    type Double: Double;
+    /// These lanes, or as many as a block of primitives holds if these are more.
+    type Block: Single;
+    /// These lanes, or as many as a node has children if these are more.
+    type Node: Single;
+    /// A primitive's id for each lane.
+    type Ids: Copy;
+
+    fn splat_ids(id: u32) -> Self::Ids;
+    fn load_ids(from: &[u32]) -> Self::Ids;
+    fn store_ids(ids: Self::Ids, to: &mut [u32]);
+    fn select_ids(mask: Self::Mask, then: Self::Ids, otherwise: Self::Ids) -> Self::Ids;
+    fn ids_eq(a: Self::Ids, b: Self::Ids) -> Self::Mask;
+    /// For ids below 2³¹, or u32::MAX, which counts as below all of them.
+    fn ids_lt(a: Self::Ids, b: Self::Ids) -> Self::Mask;
+    /// Lanes whose id has its lowest bit set.
+    fn ids_odd(ids: Self::Ids) -> Self::Mask;
+    /// All ids without their lowest bit, halved.
+    fn ids_half(ids: Self::Ids) -> Self::Ids;
+}
+
+/// f64 lanes: what follows a hit is computed in them, and rounded to f32 where it enters a queue.
+pub(crate) trait Double: Lanes<Scalar = f64> {
+    /// The first [`Lanes::WIDTH`] of a slice, widened.
+    fn widen(from: &[f32]) -> Self;
+    /// Into the first [`Lanes::WIDTH`] of a slice, each rounded to the nearest f32.
+    fn round(self, to: &mut [f32]);
+    /// The exponent e and mantissa m of m·2^e with 1 ≤ m < 2, for positive normal numbers.
+    fn split_exponent(self) -> (Self, Self);
+    /// self · 2^n for whole numbers n from −1022 to 1023.
+    fn times_power_of_two(self, n: Self) -> Self;
+}

@@ -1,0 +1,61 @@
+//! From a primitive's id to the primitive.
+
+use super::PrepareError;
+use super::bvh::Kind;
+use crate::scene::{Geometry, MaterialId};
+
+/// A word for each id: the kind in the 2 high bits, the index in its column of [`Geometry`] below.
+pub(crate) struct Directory {
+    entries: Vec<u32>,
+}
+
+impl Directory {
+    /// Ids below this can be had.
+    pub(crate) const LIMIT: u32 = 1 << 30;
+
+    pub(super) fn new(geometry: &Geometry) -> Result<Self, PrepareError> {
+        let spheres = geometry.spheres.iter().map(|sphere| sphere.id);
+        let triangles = geometry.triangles.iter().map(|triangle| triangle.id);
+        let polygons = geometry.polygons.iter().map(|polygon| polygon.id);
+        let last = spheres.clone().chain(triangles.clone()).chain(polygons.clone()).map(|id| id.0).max();
+        let count = last.map_or(0, |last| u64::from(last) + 1);
+        if count > u64::from(Self::LIMIT) {
+            return Err(PrepareError::TooMany { count });
+        }
+        let mut entries = vec![0; last.map_or(0, |last| last as usize + 1)];
+        for (index, id) in (0_u32..).zip(spheres) {
+            entries[id.0 as usize] = index;
+        }
+        for (index, id) in (0_u32..).zip(triangles) {
+            entries[id.0 as usize] = (1 << 30) | index;
+        }
+        for (index, id) in (0_u32..).zip(polygons) {
+            entries[id.0 as usize] = (2 << 30) | index;
+        }
+        Ok(Self { entries })
+    }
+
+    /// What a primitive is, and its index among those of its kind.
+    pub(crate) fn find(&self, id: u32) -> (Kind, usize) {
+        let entry = self.entries[id as usize];
+        let kind = match entry >> 30 {
+            0 => Kind::Sphere,
+            1 => Kind::Triangle,
+            _ => Kind::Polygon,
+        };
+        (kind, (entry & (Self::LIMIT - 1)) as usize)
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.entries.as_slice())
+    }
+}
+
+/// The material of a primitive.
+pub(crate) fn material_of(geometry: &Geometry, (kind, index): (Kind, usize)) -> MaterialId {
+    match kind {
+        Kind::Sphere => geometry.spheres[index].material,
+        Kind::Triangle => geometry.triangles[index].material,
+        Kind::Polygon => geometry.polygons[index].material,
+    }
+}

@@ -1,0 +1,268 @@
+//! All primitives under one tree.
+
+use super::Scale;
+use super::blocks::{BLOCK, PolygonFace, SphereBlock, TriangleBlock, touch_distance};
+use super::bvh::{self, Bounds, Child, Costs, Item, Kind, Leaf, Node, Unpacked};
+use crate::scene::{Geometry, Scene, polygon_normal};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// A tree of wide nodes over blocks of spheres and triangles and over polygons.
+pub(crate) struct Hierarchy {
+    /// The root first.
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) spheres: Vec<SphereBlock>,
+    pub(crate) triangles: Vec<TriangleBlock>,
+    pub(crate) polygons: Vec<PolygonFace>,
+    /// x, y and z of the polygons' corners. After its last corner a polygon has its first again, and then as often as
+    /// it takes for lanes to read on.
+    pub(crate) corners: [Vec<f32>; 3],
+    /// Largest magnitude of a coordinate.
+    pub(crate) extent: f32,
+    /// By id, whether a primitive lets light pass; empty where none does.
+    pub(crate) shadowless: Vec<bool>,
+    /// Wide nodes on the longest way down.
+    pub(crate) depth: u32,
+    /// What a random ray is expected to cost, in visits of a node.
+    pub(crate) cost: f64,
+}
+
+/// What a slot of a node leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// A node.
+    Node(usize),
+    /// A block of spheres.
+    Spheres(usize),
+    /// A block of triangles.
+    Triangles(usize),
+    /// Polygons: the first, and how many.
+    Polygons(usize, usize),
+}
+
+/// What the steps of a traversal cost, in visits of a node; measured with one ray at a time.
+const COSTS: Costs =
+    Costs { node: 1.0, block: [0.8, 0.9, 0.9], room: [BLOCK as f32, BLOCK as f32, 8.0], largest_leaf: BLOCK as u32 };
+
+/// Lanes may read so far beyond a polygon's last corner.
+const CORNERS_BEYOND: usize = 16;
+
+/// Polygons of a leaf are at most [`BLOCK`]; their count fits beside the index of the first.
+const COUNT_BITS: u32 = 2;
+const _: () = assert!(BLOCK <= 1 << COUNT_BITS);
+
+impl Hierarchy {
+    pub(super) fn new(scene: &Scene, scale: Scale) -> Self {
+        let geometry = &scene.geometry;
+        let sources: Vec<Source> = sources(geometry);
+        let items: Vec<Item> = sources.par_iter().map(|source| source.item(geometry, scale)).collect();
+        let tree = bvh::build(&items, &COSTS);
+        let cost = bvh::sah_cost(&tree, &COSTS);
+        let extent = items.par_iter().map(|item| largest_coordinate(item.bounds)).reduce(|| 0.0, f32::max);
+        drop(items);
+
+        let mut this = Self {
+            nodes: tree.nodes,
+            spheres: Vec::new(),
+            triangles: Vec::new(),
+            polygons: Vec::new(),
+            corners: Default::default(),
+            extent,
+            shadowless: shadowless(scene),
+            depth: tree.depth,
+            cost,
+        };
+        let places: Vec<u32> = tree
+            .leaves
+            .iter()
+            .map(|leaf| {
+                let run = &tree.order[leaf.first as usize..][..leaf.count as usize];
+                this.add_leaf(leaf, run.iter().map(|&index| sources[index as usize]), geometry, scale)
+            })
+            .collect();
+        for child in this.nodes.iter_mut().flat_map(|node| &mut node.children) {
+            if let Unpacked::Leaf(kind, leaf) = child.unpack() {
+                *child = Child::leaf(kind, places[leaf as usize]);
+            }
+        }
+        this
+    }
+
+    /// Where a slot leads; none for a slot that is not used.
+    #[inline(always)]
+    pub(crate) fn place(child: Child) -> Option<Place> {
+        match child.unpack() {
+            Unpacked::Empty => None,
+            Unpacked::Inner(node) => Some(Place::Node(node as usize)),
+            Unpacked::Leaf(Kind::Sphere, block) => Some(Place::Spheres(block as usize)),
+            Unpacked::Leaf(Kind::Triangle, block) => Some(Place::Triangles(block as usize)),
+            Unpacked::Leaf(Kind::Polygon, run) => {
+                let count = (run & ((1 << COUNT_BITS) - 1)) + 1;
+                Some(Place::Polygons((run >> COUNT_BITS) as usize, count as usize))
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn casts_shadow(&self, id: u32) -> bool {
+        !self.shadowless.get(id as usize).copied().unwrap_or(false)
+    }
+
+    /// Memory of everything that a ray reads.
+    pub(crate) fn bytes(&self) -> HierarchyBytes {
+        HierarchyBytes {
+            nodes: size_of_val(self.nodes.as_slice()),
+            spheres: size_of_val(self.spheres.as_slice()),
+            triangles: size_of_val(self.triangles.as_slice()),
+            polygons: size_of_val(self.polygons.as_slice())
+                + self.corners.iter().map(|column| size_of_val(column.as_slice())).sum::<usize>(),
+        }
+    }
+
+    /// Appends what a leaf holds and returns the word that finds it.
+    fn add_leaf(
+        &mut self,
+        leaf: &Leaf,
+        sources: impl Iterator<Item = Source>,
+        geometry: &Geometry,
+        scale: Scale,
+    ) -> u32 {
+        let first = match leaf.kind {
+            Kind::Sphere => {
+                self.spheres.push(SphereBlock::EMPTY);
+                self.spheres.len() - 1
+            }
+            Kind::Triangle => {
+                self.triangles.push(TriangleBlock::EMPTY);
+                self.triangles.len() - 1
+            }
+            Kind::Polygon => self.polygons.len(),
+        };
+        for (lane, source) in sources.enumerate() {
+            match leaf.kind {
+                Kind::Sphere => {
+                    let sphere = geometry.spheres[source.index as usize];
+                    let (center, radius) = (scale.position(sphere.center), scale.length(sphere.radius));
+                    self.spheres[first].set(lane, center, radius, sphere.id.0);
+                }
+                Kind::Triangle => {
+                    let triangle = geometry.triangles[source.index as usize];
+                    let vertices =
+                        triangle.vertices.map(|index| scale.position(geometry.vertices[index as usize]));
+                    self.triangles[first].set(lane, vertices, triangle.id.0);
+                }
+                Kind::Polygon => self.add_polygon(source, geometry, scale),
+            }
+        }
+        let first = u32::try_from(first).unwrap_or(u32::MAX);
+        match leaf.kind {
+            Kind::Polygon => first << COUNT_BITS | (leaf.count - 1),
+            Kind::Sphere | Kind::Triangle => first,
+        }
+    }
+
+    fn add_polygon(&mut self, source: Source, geometry: &Geometry, scale: Scale) {
+        let polygon = &geometry.polygons[source.index as usize];
+        let corners: Vec<Vec3> =
+            polygon.vertices.clone().map(|index| scale.position(geometry.vertices[index as usize])).collect();
+        let first = self.corners[0].len();
+        for (axis, column) in self.corners.iter_mut().enumerate() {
+            column.extend(corners.iter().map(|corner| corner[axis]));
+            column.extend(std::iter::repeat_n(corners[0][axis], CORNERS_BEYOND));
+        }
+        let wide: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
+        // What has no plane was left out of the scene.
+        let normal = polygon_normal(&wide).unwrap_or(DVec3::Z).as_vec3();
+        let bounds = bounds_of(&corners);
+        let size = (bounds.high - bounds.low).length();
+        self.polygons.push(PolygonFace {
+            normal: normal.to_array(),
+            point: corners[0].to_array(),
+            slack: touch_distance(largest_coordinate(bounds), size),
+            id: polygon.id.0,
+            first_corner: u32::try_from(first).unwrap_or(u32::MAX),
+            edges: polygon.vertices.end - polygon.vertices.start,
+        });
+    }
+}
+
+/// Bytes of the parts of a [`Hierarchy`].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct HierarchyBytes {
+    pub(crate) nodes: usize,
+    pub(crate) spheres: usize,
+    pub(crate) triangles: usize,
+    pub(crate) polygons: usize,
+}
+
+impl HierarchyBytes {
+    pub(crate) fn total(self) -> usize {
+        self.nodes + self.spheres + self.triangles + self.polygons
+    }
+}
+
+/// A primitive in its column of the scene's geometry.
+#[derive(Clone, Copy)]
+struct Source {
+    kind: Kind,
+    index: u32,
+}
+
+fn sources(geometry: &Geometry) -> Vec<Source> {
+    let run = |kind, count: usize| (0..count).map(move |index| Source { kind, index: u32::try_from(index).unwrap_or(u32::MAX) });
+    run(Kind::Sphere, geometry.spheres.len())
+        .chain(run(Kind::Triangle, geometry.triangles.len()))
+        .chain(run(Kind::Polygon, geometry.polygons.len()))
+        .collect()
+}
+
+impl Source {
+    fn item(self, geometry: &Geometry, scale: Scale) -> Item {
+        let index = self.index as usize;
+        let vertex = |index: u32| scale.position(geometry.vertices[index as usize]);
+        let (bounds, weight) = match self.kind {
+            Kind::Sphere => {
+                let sphere = geometry.spheres[index];
+                let (center, radius) = (scale.position(sphere.center), scale.length(sphere.radius));
+                // Rounded outward: the sum of centre and radius may round to the wrong side of the surface.
+                let low = (center - Vec3::splat(radius)).map(f32::next_down);
+                let high = (center + Vec3::splat(radius)).map(f32::next_up);
+                (Bounds { low, high }, 1)
+            }
+            Kind::Triangle => (bounds_of(&geometry.triangles[index].vertices.map(vertex)), 1),
+            Kind::Polygon => {
+                let corners: Vec<Vec3> = geometry.polygons[index].vertices.clone().map(vertex).collect();
+                (bounds_of(&corners), u16::try_from(corners.len()).unwrap_or(u16::MAX))
+            }
+        };
+        Item { bounds, kind: self.kind, weight }
+    }
+}
+
+fn bounds_of(points: &[Vec3]) -> Bounds {
+    points.iter().fold(Bounds::EMPTY, |bounds, &point| bounds.union(Bounds { low: point, high: point }))
+}
+
+fn largest_coordinate(bounds: Bounds) -> f32 {
+    bounds.low.abs().max(bounds.high.abs()).max_element()
+}
+
+fn shadowless(scene: &Scene) -> Vec<bool> {
+    let geometry = &scene.geometry;
+    let spheres = geometry.spheres.iter().map(|sphere| (sphere.id, sphere.material));
+    let triangles = geometry.triangles.iter().map(|triangle| (triangle.id, triangle.material));
+    let polygons = geometry.polygons.iter().map(|polygon| (polygon.id, polygon.material));
+    let ids = spheres
+        .chain(triangles)
+        .chain(polygons)
+        .filter(|(_, material)| !scene.materials[material.0 as usize].casts_shadow)
+        .map(|(id, _)| id.0 as usize);
+    let mut shadowless = Vec::new();
+    for id in ids {
+        if shadowless.len() <= id {
+            shadowless.resize(id + 1, false);
+        }
+        shadowless[id] = true;
+    }
+    shadowless
+}

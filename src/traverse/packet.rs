@@ -1,0 +1,563 @@
+//! Rays that walk together: at a node, its eight children are tested against bounds of all rays at once; the first group of
+//! lanes with a ray that meets a child's box takes the packet into it; at a leaf, the lanes are rays.
+//!
+//! Sources: Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", 2007 (the
+//! first active ray); Boulos, Wald and Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets", 2006
+//! (interval arithmetic).
+
+use super::candidate::{self, Start};
+use super::coherence::WIDEST_SLOPES;
+use super::{Counts, DEAD, Ends, NOTHING, Rays};
+use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
+use crate::kernel::polygon::Outline;
+use crate::kernel::sphere::Line;
+use crate::kernel::{RaySpace, axes_from};
+use crate::lanes::{Lanes, Mask, Single, Vector};
+use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
+use crate::prepare::{BLOCK, Hierarchy, Place, PolygonFace, SphereBlock, TriangleBlock};
+
+/// Rays of a packet.
+pub(super) const PACKET: usize = 64;
+
+/// A number for each ray.
+type Column = [f32; PACKET];
+
+/// Up to 64 rays, in groups of as many as there are lanes.
+#[repr(C, align(64))]
+pub(super) struct Packet {
+    origin: [Column; 3],
+    direction: [Column; 3],
+    near_origin: [Column; 3],
+    far_origin: [Column; 3],
+    inverse: [Column; 3],
+    shear: [Column; 2],
+    t_per_z: Column,
+    a: Column,
+    inverse_a: Column,
+    /// The nearest hit so far, or where hits end to be of interest.
+    t: Column,
+    id: [u32; PACKET],
+    departure: [u32; PACKET],
+    /// Order of axes in ray space, the same for all.
+    axes: [usize; 3],
+    /// Whether the directions' components are negative, the same for all.
+    backwards: [bool; 3],
+    hull: Hull,
+    count: usize,
+}
+
+/// Bounds of what the slab tests use of all rays.
+#[derive(Clone, Copy, Default)]
+struct Hull {
+    /// Of the near origins that which puts a near plane nearest, a coordinate an axis; of the far ones, farthest.
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
+    inverse: [[f32; 2]; 3],
+    /// No ray looks for hits beyond this.
+    t_max: f32,
+}
+
+/// A child that waits: where its box is, what it leads to, the first group of rays that may meet it, and a t that none
+/// enters it before.
+#[derive(Clone, Copy)]
+struct Waiting {
+    node: u32,
+    slot: u8,
+    first_group: u8,
+    enters: f32,
+}
+
+const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 1;
+
+impl Packet {
+    pub(super) fn new() -> Self {
+        let column = [0.0; PACKET];
+        Self {
+            origin: [column; 3],
+            direction: [column; 3],
+            near_origin: [column; 3],
+            far_origin: [column; 3],
+            inverse: [column; 3],
+            shear: [column; 2],
+            t_per_z: column,
+            a: column,
+            inverse_a: column,
+            t: [DEAD; PACKET],
+            id: [NOTHING; PACKET],
+            departure: [super::NOWHERE; PACKET],
+            axes: [0, 1, 2],
+            backwards: [false; 3],
+            hull: Hull::default(),
+            count: 0,
+        }
+    }
+
+    /// Takes rays in, the run of [`PACKET`] rows from `first`; false if they are too unlike to walk together.
+    pub(super) fn gather<F: Single>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        t: &[f32],
+        first: usize,
+        count: usize,
+    ) -> bool {
+        let run = first..first + PACKET;
+        let direction = rays.direction.map(|column| &column[run.clone()]);
+        let Some((axes, backwards)) = common_order::<F>(direction) else { return false };
+        (self.axes, self.backwards, self.count) = (axes, backwards, count);
+        for axis in 0..3 {
+            self.direction[axis].copy_from_slice(direction[axis]);
+            self.origin[axis].copy_from_slice(&rays.origin[axis][run.clone()]);
+        }
+        for slope in 0..2 {
+            let mut bounds = [F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY)];
+            for row in (0..PACKET).step_by(F::WIDTH) {
+                let shear =
+                    F::load(&self.direction[axes[slope]][row..]) / F::load(&self.direction[axes[2]][row..]);
+                shear.store(&mut self.shear[slope][row..]);
+                bounds = widened(bounds, shear);
+            }
+            let [least, largest] = folded(bounds);
+            if largest - least > WIDEST_SLOPES {
+                return false;
+            }
+        }
+        self.t.copy_from_slice(&t[run.clone()]);
+        self.id = [NOTHING; PACKET];
+        if !rays.departure.is_empty() {
+            self.departure.copy_from_slice(&rays.departure[run]);
+        }
+        self.derive::<F>(hierarchy);
+        true
+    }
+
+    /// What the tests need beside origin and direction.
+    fn derive<F: Single>(&mut self, hierarchy: &Hierarchy) {
+        let one = F::splat(1.0);
+        for row in (0..PACKET).step_by(F::WIDTH) {
+            let origin = self.origin.map_lanes::<F>(row);
+            let direction = self.direction.map_lanes::<F>(row);
+            let third = [direction.x, direction.y, direction.z][self.axes[2]];
+            (one / third).store(&mut self.t_per_z[row..]);
+            let a = direction.dot(direction);
+            a.store(&mut self.a[row..]);
+            (one / a).store(&mut self.inverse_a[row..]);
+
+            let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
+            let padding = (F::splat(hierarchy.extent) + farthest) * F::splat(PADDING);
+            let least = third.abs() * F::splat(LEAST_COMPONENT);
+            let by_axis = [(origin.x, direction.x), (origin.y, direction.y), (origin.z, direction.z)];
+            for (axis, (origin, direction)) in by_axis.into_iter().enumerate() {
+                let size = direction.abs().max(least);
+                let (forward, backward) = (origin + padding, origin - padding);
+                let (near, far, component) = if self.backwards[axis] {
+                    (backward, forward, -size)
+                } else {
+                    (forward, backward, size)
+                };
+                near.store(&mut self.near_origin[axis][row..]);
+                far.store(&mut self.far_origin[axis][row..]);
+                (one / component).store(&mut self.inverse[axis][row..]);
+            }
+        }
+        for axis in 0..3 {
+            let [near, far, inverse] = [&self.near_origin, &self.far_origin, &self.inverse]
+                .map(|columns| column_bounds::<F>(&columns[axis]));
+            // The nearest near plane belongs to the origin that is farthest along, the farthest far plane to the other.
+            let (along, against) = if self.backwards[axis] { (0, 1) } else { (1, 0) };
+            self.hull.near_origin[axis] = near[along];
+            self.hull.far_origin[axis] = far[against];
+            self.hull.inverse[axis] = inverse;
+        }
+        self.hull.t_max = column_bounds::<F>(&self.t)[1];
+    }
+
+    /// Puts the results back.
+    pub(super) fn scatter<const ANY: bool>(&self, ends: &mut Ends<'_>, first: usize) {
+        ends.t[first..first + PACKET].copy_from_slice(&self.t);
+        if !ANY {
+            ends.id[first..first + PACKET].copy_from_slice(&self.id);
+        }
+    }
+
+    /// Finds the nearest hit of each ray or, if ANY, which of them hit anything that casts a shadow.
+    pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        counts: &mut Counts,
+    ) {
+        counts.in_packets += self.count as u64;
+        let mut stack = [Waiting { node: 0, slot: 0, first_group: 0, enters: 0.0 }; STACK];
+        let mut waiting = self.push_children::<F>(hierarchy, 0, 0, &mut stack, 0, counts);
+        while waiting > 0 {
+            waiting -= 1;
+            let Waiting { node: parent, slot, first_group, enters } = stack[waiting];
+            if enters > self.hull.t_max {
+                continue;
+            }
+            let node = &hierarchy.nodes[parent as usize];
+            let child = node.children[slot as usize];
+            let Some((group, mask)) = self.first_group_in::<F>(node, slot, first_group, counts) else { continue };
+            match Hierarchy::place(child) {
+                None => {}
+                Some(Place::Node(index)) => {
+                    waiting = self.push_children::<F>(hierarchy, index, group, &mut stack, waiting, counts);
+                }
+                Some(leaf) => {
+                    self.visit_leaf::<F, DEPARTING, ANY>(hierarchy, leaf, (node, slot), (group, mask), counts);
+                    self.hull.t_max = column_bounds::<F>(&self.t)[1];
+                    if ANY && self.hull.t_max < 0.0 {
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Puts the children that some ray may meet on the stack, the nearest on top.
+    #[inline(always)]
+    fn push_children<F: Single>(
+        &self,
+        hierarchy: &Hierarchy,
+        index: usize,
+        group: u8,
+        stack: &mut [Waiting; STACK],
+        bottom: usize,
+        counts: &mut Counts,
+    ) -> usize {
+        let node = &hierarchy.nodes[index];
+        let mut enters = [0.0; WIDTH];
+        let mut bits = 0;
+        for slot in (0..WIDTH).step_by(F::Node::WIDTH) {
+            let (enter, meets) = self.hull_enters::<F::Node>(node, slot);
+            enter.store(&mut enters[slot..]);
+            bits |= meets.bits() << slot;
+            counts.boxes.add(F::Node::WIDTH, F::Node::WIDTH);
+        }
+        let mut waiting = bottom;
+        while bits != 0 {
+            let slot = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            #[expect(clippy::cast_possible_truncation, reason = "a slot is below 8, and nodes are numbered in 32 bits")]
+            let entry =
+                Waiting { node: index as u32, slot: slot as u8, first_group: group, enters: enters[slot] };
+            let mut place = waiting;
+            while place > bottom && stack[place - 1].enters < entry.enters {
+                stack[place] = stack[place - 1];
+                place -= 1;
+            }
+            stack[place] = entry;
+            waiting += 1;
+        }
+        waiting
+    }
+
+    /// Boxes of children against bounds of all rays: rounding is monotonic, so what a ray's own test lets through is let
+    /// through here.
+    #[inline(always)]
+    fn hull_enters<L: Single>(&self, node: &Node, slot: usize) -> (L, L::Mask) {
+        let mut enter = L::splat(0.0);
+        let mut leave = L::splat(self.hull.t_max);
+        for axis in 0..3 {
+            let (near, far) = if self.backwards[axis] {
+                (&node.high[axis], &node.low[axis])
+            } else {
+                (&node.low[axis], &node.high[axis])
+            };
+            let [least, largest] = self.hull.inverse[axis].map(L::splat);
+            let near = L::load(&near[slot..]) - L::splat(self.hull.near_origin[axis]);
+            let far = L::load(&far[slot..]) - L::splat(self.hull.far_origin[axis]);
+            enter = (near * least).min(near * largest).max(enter);
+            leave = (far * least).max(far * largest).min(leave);
+        }
+        (enter, enter.le(leave))
+    }
+
+    /// The first group from `from` on with a ray that meets a child's box, and which of its rays do.
+    #[inline(always)]
+    fn first_group_in<F: Single>(
+        &self,
+        node: &Node,
+        slot: u8,
+        from: u8,
+        counts: &mut Counts,
+    ) -> Option<(u8, F::Mask)> {
+        #[expect(clippy::cast_possible_truncation, reason = "at most 64 groups")]
+        let groups = (PACKET / F::WIDTH) as u8;
+        (from..groups).find_map(|group| {
+            let mask = self.group_enters::<F>(node, slot, group, counts);
+            mask.any().then_some((group, mask))
+        })
+    }
+
+    /// Which rays of a group meet a child's box.
+    #[inline(always)]
+    fn group_enters<F: Single>(&self, node: &Node, slot: u8, group: u8, counts: &mut Counts) -> F::Mask {
+        let row = group as usize * F::WIDTH;
+        let slot = slot as usize;
+        let slabs = Slabs {
+            near_origin: self.near_origin.map_lanes(row),
+            far_origin: self.far_origin.map_lanes(row),
+            inverse: self.inverse.map_lanes(row),
+        };
+        let plane = |axis: usize, far: bool| {
+            F::splat(if self.backwards[axis] == far { node.low[axis][slot] } else { node.high[axis][slot] })
+        };
+        let near = Vector::new(plane(0, false), plane(1, false), plane(2, false));
+        let far = Vector::new(plane(0, true), plane(1, true), plane(2, true));
+        counts.boxes.add(F::WIDTH, self.count.saturating_sub(row).min(F::WIDTH));
+        bounds::enter(&slabs, near, far, F::splat(0.0), F::load(&self.t[row..])).1
+    }
+
+    /// Tests what is in a leaf, against every group from the given one on whose rays meet its box.
+    #[inline(always)]
+    fn visit_leaf<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        leaf: Place,
+        (node, slot): (&Node, u8),
+        (first_group, mask): (u8, F::Mask),
+        counts: &mut Counts,
+    ) {
+        let mut group = first_group;
+        let mut mask = mask;
+        loop {
+            let bits = mask.bits();
+            if bits != 0 {
+                let row = group as usize * F::WIDTH;
+                let used = bits.count_ones() as usize;
+                match leaf {
+                    Place::Triangles(index) => {
+                        let block = &hierarchy.triangles[index];
+                        self.test_triangles::<F, DEPARTING, ANY>(hierarchy, block, row, (mask, used), counts);
+                    }
+                    Place::Spheres(index) => {
+                        let block = &hierarchy.spheres[index];
+                        self.test_spheres::<F, DEPARTING, ANY>(hierarchy, block, row, (mask, used), counts);
+                    }
+                    Place::Polygons(first, count) => {
+                        for face in &hierarchy.polygons[first..first + count] {
+                            self.test_polygon::<F, DEPARTING, ANY>(hierarchy, face, row, (mask, used), counts);
+                        }
+                    }
+                    Place::Node(_) => {}
+                }
+            }
+            group += 1;
+            if group as usize * F::WIDTH >= PACKET {
+                return;
+            }
+            mask = self.group_enters::<F>(node, slot, group, counts);
+        }
+    }
+
+    #[inline(always)]
+    fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        block: &TriangleBlock,
+        row: usize,
+        (mask, used): (F::Mask, usize),
+        counts: &mut Counts,
+    ) {
+        let space = self.space::<F>(row);
+        for lane in 0..BLOCK {
+            let id = block.ids[lane];
+            if id == NOTHING {
+                return; // the others are empty too
+            }
+            if ANY && !hierarchy.casts_shadow(id) {
+                continue;
+            }
+            let vertices =
+                [0, 1, 2].map(|vertex| self.axes.map(|axis| F::splat(block.vertices[vertex][axis][lane])));
+            let start = self.start::<F, DEPARTING>(row, id);
+            let slack = F::splat(block.slack[lane]);
+            let (t, hit) = candidate::triangle::<F, DEPARTING>(&space, vertices, slack, start);
+            self.offer::<F, ANY>(row, t, hit & mask, id);
+            counts.triangles.add(F::WIDTH, used);
+        }
+    }
+
+    #[inline(always)]
+    fn test_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        block: &SphereBlock,
+        row: usize,
+        (mask, used): (F::Mask, usize),
+        counts: &mut Counts,
+    ) {
+        let line = self.line::<F>(row);
+        for lane in 0..BLOCK {
+            let id = block.ids[lane];
+            if id == NOTHING {
+                return; // the others are empty too
+            }
+            if ANY && !hierarchy.casts_shadow(id) {
+                continue;
+            }
+            let center = Vector::splat(block.centers.map(|column| column[lane]));
+            let radius_squared = F::splat(block.radii_squared[lane]);
+            let start = self.start::<F, DEPARTING>(row, id);
+            let slack = F::splat(block.slack[lane]);
+            let (t, hit) = candidate::sphere::<F, DEPARTING>(&line, center, radius_squared, slack, start);
+            self.offer::<F, ANY>(row, t, hit & mask, id);
+            counts.spheres.add(F::WIDTH, used);
+        }
+    }
+
+    #[inline(always)]
+    fn test_polygon<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        face: &PolygonFace,
+        row: usize,
+        (mask, used): (F::Mask, usize),
+        counts: &mut Counts,
+    ) {
+        if ANY && !hierarchy.casts_shadow(face.id) {
+            return;
+        }
+        let zero = F::splat(0.0);
+        let space = self.space::<F>(row);
+        let first = face.first_corner as usize;
+        let corner = |index: usize| space.see(self.axes.map(|axis| F::splat(hierarchy.corners[axis][index])));
+        let mut outline = Outline::<F>::new();
+        let mut from = corner(first);
+        for index in first + 1..=first + face.edges as usize {
+            let to = corner(index);
+            outline.add_edge(&from, &to, zero);
+            from = to;
+        }
+        counts.polygons.calls += u64::from(face.edges);
+        counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
+        counts.polygons.used += u64::from(face.edges) * used as u64;
+        if !(outline.odd & mask).any() {
+            return;
+        }
+        let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
+        let start = self.start::<F, DEPARTING>(row, face.id);
+        let (t, hit) = candidate::polygon::<F, DEPARTING>(
+            &self.line(row),
+            space.t_per_z,
+            plane,
+            &outline,
+            F::splat(face.slack),
+            start,
+        );
+        self.offer::<F, ANY>(row, t, hit & mask, face.id);
+    }
+
+    /// Keeps a hit where it is nearer than what was found so far or, at the same t, of smaller id.
+    #[inline(always)]
+    fn offer<F: Single, const ANY: bool>(&mut self, row: usize, t: F, hit: F::Mask, id: u32) {
+        let nearest = F::load(&self.t[row..]);
+        if ANY {
+            let t = F::select(hit & t.lt(nearest), F::splat(DEAD), nearest);
+            t.store(&mut self.t[row..]);
+            return;
+        }
+        if !(hit & t.le(nearest)).any() {
+            return;
+        }
+        let (ids, own) = (F::load_ids(&self.id[row..]), F::splat_ids(id));
+        // No id is smaller than that of nothing, so a hit at the very end of the ray does not count.
+        let closer = hit & (t.lt(nearest) | (t.eq(nearest) & F::ids_lt(own, ids)));
+        F::select(closer, t, nearest).store(&mut self.t[row..]);
+        F::store_ids(F::select_ids(closer, own, ids), &mut self.id[row..]);
+    }
+
+    #[inline(always)]
+    fn space<F: Single>(&self, row: usize) -> RaySpace<F> {
+        RaySpace {
+            origin: self.axes.map(|axis| F::load(&self.origin[axis][row..])),
+            shear: [F::load(&self.shear[0][row..]), F::load(&self.shear[1][row..])],
+            t_per_z: F::load(&self.t_per_z[row..]),
+        }
+    }
+
+    #[inline(always)]
+    fn line<F: Single>(&self, row: usize) -> Line<F> {
+        Line {
+            origin: self.origin.map_lanes(row),
+            direction: self.direction.map_lanes(row),
+            a: F::load(&self.a[row..]),
+            inverse_a: F::load(&self.inverse_a[row..]),
+        }
+    }
+
+    /// Which rays of a group start on a primitive, and which go inside what they start on.
+    #[inline(always)]
+    fn start<F: Single, const DEPARTING: bool>(&self, row: usize, id: u32) -> Start<F> {
+        if !DEPARTING {
+            return Start { own: F::first(0), inward: F::first(0) };
+        }
+        let departure = F::load_ids(&self.departure[row..]);
+        Start { own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)), inward: F::ids_odd(departure) }
+    }
+}
+
+/// Three columns as lanes of vectors.
+trait Columns {
+    fn map_lanes<F: Single>(&self, row: usize) -> Vector<F>;
+}
+
+impl Columns for [Column; 3] {
+    #[inline(always)]
+    fn map_lanes<F: Single>(&self, row: usize) -> Vector<F> {
+        Vector::new(F::load(&self[0][row..]), F::load(&self[1][row..]), F::load(&self[2][row..]))
+    }
+}
+
+/// The order of axes and the signs of the directions, if all have the same.
+fn common_order<F: Single>(direction: [&[f32]; 3]) -> Option<([usize; 3], [bool; 3])> {
+    let none = F::first(0);
+    let (mut negative, mut positive) = ([none; 3], [none; 3]);
+    let mut fastest = [none; 3];
+    let zero = F::splat(0.0);
+    for row in (0..PACKET).step_by(F::WIDTH) {
+        let components = direction.map(|column| F::load(&column[row..]));
+        for axis in 0..3 {
+            let is_negative = components[axis].lt(zero);
+            negative[axis] = negative[axis] | is_negative;
+            positive[axis] = positive[axis] | !is_negative;
+        }
+        let [x, y, z] = components.map(Lanes::abs);
+        let first = x.ge(y) & x.ge(z);
+        let second = !first & y.ge(z);
+        fastest = [fastest[0] | first, fastest[1] | second, fastest[2] | !(first | second)];
+    }
+    let is_mixed = (0..3).any(|axis| negative[axis].any() && positive[axis].any());
+    let mut third = (0..3).filter(|&axis| fastest[axis].any());
+    match (is_mixed, third.next(), third.next()) {
+        (false, Some(third), None) => Some((axes_from(third), negative.map(Mask::any))),
+        _ => None,
+    }
+}
+
+#[inline(always)]
+fn widened<F: Single>([least, largest]: [F; 2], by: F) -> [F; 2] {
+    [by.min(least), by.max(largest)]
+}
+
+/// The least and the largest of all lanes.
+#[inline(always)]
+fn folded<F: Single>([least, largest]: [F; 2]) -> [f32; 2] {
+    let mut array = [[0.0; 16]; 2];
+    least.store(&mut array[0]);
+    largest.store(&mut array[1]);
+    let [least, largest] = array;
+    [
+        least[1..F::WIDTH].iter().fold(least[0], |a, &b| Lanes::min(a, b)),
+        largest[1..F::WIDTH].iter().fold(largest[0], |a, &b| Lanes::max(a, b)),
+    ]
+}
+
+#[inline(always)]
+fn column_bounds<F: Single>(column: &Column) -> [f32; 2] {
+    let first = F::load(column);
+    folded((F::WIDTH..PACKET).step_by(F::WIDTH).fold([first, first], |bounds, row| {
+        widened(bounds, F::load(&column[row..]))
+    }))
+}

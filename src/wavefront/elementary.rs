@@ -1,0 +1,87 @@
+//! Powers and exponentials in f64 lanes, from + − × ÷ and the bits of numbers: the same bits in every build.
+
+use crate::lanes::Double;
+use std::f64::consts::{LN_2, LOG2_E, SQRT_2};
+
+/// e^x for x ≤ 0, within 2 ulp; 0 below −700, where f32 has long been 0.
+#[inline(always)]
+pub(super) fn exp<D: Double>(x: D) -> D {
+    // The high part has enough zeros at its end for its product with a whole number to be exact. Source: Cody and Waite,
+    // "Software Manual for the Elementary Functions", 1980.
+    const LN_2_HIGH: f64 = 0.693_147_180_369_123_8;
+    const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    let least = D::splat(-700.0);
+    let bounded = x.max(least);
+    let halves = nearest_whole(bounded * D::splat(LOG2_E));
+    let rest = (bounded - halves * D::splat(LN_2_HIGH)) - halves * D::splat(LN_2_LOW);
+    // Taylor's series: |rest| ≤ ln 2 / 2, and the term after the last is below 2⁻⁵³.
+    let mut sum = D::splat(1.0);
+    for k in (1..=13).rev() {
+        sum = D::splat(1.0) + sum * rest * D::splat(1.0 / f64::from(k));
+    }
+    D::select(x.lt(least), D::splat(0.0), sum.times_power_of_two(halves))
+}
+
+/// x^y for 0 ≤ x ≤ 1 and y ≥ 0, with a relative error of some 2⁻⁵² · max(1, y·|ln x|); 0⁰ = 1. An x that rounding has
+/// taken above 1 is no harm.
+#[inline(always)]
+pub(super) fn pow<D: Double>(x: D, y: D) -> D {
+    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let is_zero = x.le(zero);
+    let at_zero = D::select(y.eq(zero), one, zero);
+    let exponent = y * ln(D::select(is_zero, one, x));
+    D::select(is_zero, at_zero, exp(exponent))
+}
+
+/// The natural logarithm of a positive normal number: with x = m·2^e and m around 1, e·ln 2 + 2·atanh((m − 1)/(m + 1)).
+#[inline(always)]
+fn ln<D: Double>(x: D) -> D {
+    let one = D::splat(1.0);
+    let (exponent, mantissa) = x.split_exponent();
+    let is_large = mantissa.gt(D::splat(SQRT_2));
+    let mantissa = D::select(is_large, mantissa * D::splat(0.5), mantissa);
+    let exponent = D::select(is_large, exponent + one, exponent);
+    let s = (mantissa - one) / (mantissa + one);
+    let square = s * s;
+    // |s| ≤ 0.172: the term after the last is below 2⁻⁵³.
+    let mut sum = D::splat(1.0 / 21.0);
+    for k in (0..10).rev() {
+        sum = D::splat(1.0 / f64::from(2 * k + 1)) + sum * square;
+    }
+    exponent * D::splat(LN_2) + (s + s) * sum
+}
+
+/// The nearest whole number, for magnitudes below 2⁵¹: adding and subtracting 1.5·2⁵² rounds to one.
+#[inline(always)]
+fn nearest_whole<D: Double>(x: D) -> D {
+    let shift = D::splat(6_755_399_441_055_744.0);
+    (x + shift) - shift
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn limits() {
+        assert_eq!([exp(0.0_f64), exp(-1e300), exp(-701.0)], [1.0, 0.0, 0.0]);
+        assert_eq!([pow(0.0_f64, 0.0), pow(0.0, 3.0), pow(1.0, 1e9), pow(0.5, 0.0)], [1.0, 0.0, 1.0, 1.0]);
+        assert_eq!(pow(0.5_f64, 3.0), 0.125);
+    }
+
+    proptest! {
+        #[test]
+        fn exponentials_agree_with_the_c_library(x in -699.0..0.0f64) {
+            let (own, std) = (exp(x), x.exp());
+            prop_assert!((own - std).abs() <= 4.0 * f64::EPSILON * std, "{own} against {std}");
+        }
+
+        #[test]
+        fn powers_agree_with_the_c_library(x in 0.0..=1.0f64, y in 0.0..2000.0f64) {
+            let (own, std) = (pow(x, y), x.powf(y));
+            let tolerance = 4.0 * f64::EPSILON * (1.0 + (y * x.ln()).abs());
+            prop_assert!((own - std).abs() <= tolerance * std + 1e-300, "{own} against {std}");
+        }
+    }
+}

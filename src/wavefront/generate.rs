@@ -1,0 +1,64 @@
+//! Primary rays from samples.
+
+use super::queue::RayQueue;
+use super::tiles::Sample;
+use crate::film::SamplePattern;
+use crate::lanes::{Double, Lanes, Vector};
+use crate::prepare::View;
+use crate::traverse::LaneUse;
+
+/// Makes a ray of each sample. In f64, so that a ray is off by one rounding and not by several.
+pub(super) fn generate<D: Double>(
+    view: &View,
+    pattern: &SamplePattern,
+    samples: &[Sample],
+    rays: &mut RayQueue,
+    lanes: &mut LaneUse,
+) {
+    rays.clear();
+    rays.set_len(samples.len());
+    let basis = [view.u, view.v, view.w].map(|axis| Vector::<D>::splat(axis.to_array()));
+    let [u, v, w] = basis;
+    let eye = Vector::splat(view.eye.to_array());
+    let one = D::splat(1.0);
+    for (first, chunk) in (0..).step_by(D::WIDTH).zip(samples.chunks(D::WIDTH)) {
+        lanes.add(D::WIDTH, chunk.len());
+        let mut points = [[0.0; 8]; 2];
+        for (lane, sample) in chunk.iter().enumerate() {
+            let [xi, eta] = pattern.position(sample.x, sample.y, sample.s);
+            points[0][lane] = f64::from(sample.x) + xi;
+            points[1][lane] = f64::from(sample.row_from_bottom) + eta;
+        }
+        let [x, y] = [0, 1].map(|axis| {
+            D::splat(view.low[axis])
+                + D::splat(view.extent[axis]) * D::load(&points[axis]) / D::splat(view.pixels[axis])
+        });
+        let offset = u * x + v * y;
+        let (origin, direction) = match view.distance {
+            Some(distance) => (eye, (offset - w * D::splat(distance)).normalized(one)),
+            None => (eye + offset, -w),
+        };
+        round_vector(origin, &mut rays.origin, first);
+        round_vector(direction, &mut rays.direction, first);
+    }
+}
+
+/// Rounds into three columns, from a row on.
+#[inline(always)]
+pub(super) fn round_vector<D: Double>(
+    vector: Vector<D>,
+    columns: &mut [super::column::Column<f32>; 3],
+    row: usize,
+) {
+    let [x, y, z] = columns;
+    vector.x.round(&mut x[row..]);
+    vector.y.round(&mut y[row..]);
+    vector.z.round(&mut z[row..]);
+}
+
+/// Widens from three columns, from a row on.
+#[inline(always)]
+pub(super) fn widen_vector<D: Double>(columns: &[super::column::Column<f32>; 3], row: usize) -> Vector<D> {
+    let [x, y, z] = columns;
+    Vector::new(D::widen(&x[row..]), D::widen(&y[row..]), D::widen(&z[row..]))
+}

@@ -1,0 +1,57 @@
+//! The queues of one depth.
+
+use super::queue::{
+    AttenuationQueue, ChildQueue, DepartureQueue, PendingQueue, RadianceQueue, RayQueue,
+};
+use crate::prepare::Plan;
+
+/// Rays of one depth, what they see, and the surfaces of the batch of them whose children are being traced.
+///
+/// These queues live on while deeper levels are worked through; everything else is shared by all depths.
+pub(super) struct Level {
+    pub(super) rays: RayQueue,
+    /// Row by row of the rays; empty at depth 0.
+    pub(super) departures: DepartureQueue,
+    /// Row by row of the rays.
+    pub(super) radiance: RadianceQueue,
+    /// Row by row of the batch's surfaces, as all that follow.
+    pub(super) pending: PendingQueue,
+    pub(super) attenuations: AttenuationQueue,
+    pub(super) reflected: ChildQueue,
+    pub(super) refracted: ChildQueue,
+}
+
+impl Level {
+    /// Room for the children of a batch, or for a batch of primary rays at depth 0.
+    pub(super) fn new(plan: &Plan, depth: u32, batch: usize) -> Self {
+        let rays = if depth == 0 { batch } else { batch * (usize::from(plan.reflection) + usize::from(plan.refraction)) };
+        let if_needed = |is_needed: bool, rows: usize| if is_needed { rows } else { 0 };
+        let has_children = depth < plan.max_depth;
+        let has_surfaces = plan.spheres + plan.triangles + plan.polygons > 0;
+        Self {
+            rays: RayQueue::with_capacity(rays),
+            departures: DepartureQueue::with_capacity(if_needed(depth > 0, rays)),
+            radiance: RadianceQueue::with_capacity(rays),
+            pending: PendingQueue::with_capacity(if_needed(has_surfaces, batch)),
+            attenuations: AttenuationQueue::with_capacity(if_needed(plan.absorption, batch)),
+            reflected: ChildQueue::with_capacity(if_needed(plan.reflection && has_children, batch)),
+            refracted: ChildQueue::with_capacity(if_needed(plan.refraction && has_children, batch)),
+        }
+    }
+
+    /// Empties the rays, for their parents to fill.
+    pub(super) fn begin(&mut self) {
+        self.rays.clear();
+        self.departures.clear();
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.rays.bytes()
+            + self.departures.bytes()
+            + self.radiance.bytes()
+            + self.pending.bytes()
+            + self.attenuations.bytes()
+            + self.reflected.bytes()
+            + self.refracted.bytes()
+    }
+}

@@ -1,0 +1,383 @@
+//! What the surfaces are like that rays have hit: the exact place, and normals.
+//!
+//! The kernels found in f32 which primitive is nearest; here the hit is computed anew in f64, once a ray, from the same f32
+//! numbers, and rounded once. A point is put back onto its primitive rather than taken as origin + t·direction.
+
+use super::generate::widen_vector;
+use super::queue::{HitQueue, NormalQueue, RadianceQueue, RadianceRecord, RayQueue, SurfaceQueue};
+use super::statistics::Work;
+use crate::lanes::{Double, Lanes, Mask, Vector};
+use crate::prepare::bvh::Kind;
+use crate::prepare::{Prepared, material_of};
+use crate::scene::{Geometry, Polygon};
+use crate::traverse::NOTHING;
+use glam::{DVec3, Vec3};
+
+/// Rows of rays by what they hit. Each list has room for a batch.
+pub(super) struct Sorted {
+    by_kind: [Vec<HitRow>; Kind::COUNT],
+}
+
+/// A ray, and the primitive that it hits.
+#[derive(Clone, Copy)]
+struct HitRow {
+    ray: u32,
+    id: u32,
+    /// In its column of the scene's geometry.
+    index: u32,
+}
+
+impl Sorted {
+    pub(super) fn with_capacity(rows: [usize; Kind::COUNT]) -> Self {
+        Self { by_kind: rows.map(Vec::with_capacity) }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.by_kind.iter().map(|rows| rows.capacity() * size_of::<HitRow>()).sum()
+    }
+
+    /// Sorts a batch of rays, and gives those that hit nothing the background.
+    fn sort(
+        &mut self,
+        prepared: &Prepared<'_>,
+        first_ray: usize,
+        hits: &HitQueue,
+        radiance: &mut RadianceQueue,
+    ) {
+        self.by_kind.iter_mut().for_each(Vec::clear);
+        let background = prepared.scene.image.background.to_array();
+        #[expect(clippy::cast_possible_truncation, reason = "a batch has some thousand rows, a kind 2³⁰ primitives")]
+        for (row, &id) in hits.id[..hits.len()].iter().enumerate() {
+            let ray = first_ray + row;
+            if id == NOTHING {
+                radiance.put(ray, RadianceRecord { radiance: background });
+            } else {
+                let (kind, index) = prepared.directory.find(id);
+                self.by_kind[kind as usize].push(HitRow { ray: ray as u32, id, index: index as u32 });
+            }
+        }
+    }
+}
+
+/// Rays of a batch: `rays[first..]`, as many as there are hits.
+pub(super) struct Batch<'a> {
+    pub(super) first: usize,
+    pub(super) rays: &'a RayQueue,
+    /// Where the rays start; empty for primary rays.
+    pub(super) departures: &'a [u32],
+    pub(super) hits: &'a HitQueue,
+}
+
+/// Appends a surface for each hit of a batch, spheres first, then triangles, then polygons. Rays that miss see the
+/// background.
+pub(super) fn surface<D: Double>(
+    prepared: &Prepared<'_>,
+    batch: &Batch<'_>,
+    sorted: &mut Sorted,
+    surfaces: &mut SurfaceQueue,
+    normals: &mut NormalQueue,
+    radiance: &mut RadianceQueue,
+    work: &mut Work,
+) {
+    sorted.sort(prepared, batch.first, batch.hits, radiance);
+    surfaces.clear();
+    normals.clear();
+    let mut out = Out { prepared, surfaces, normals, work };
+    for chunk in sorted.by_kind[Kind::Sphere as usize].chunks(D::WIDTH) {
+        let found = spheres::<D>(prepared, batch, chunk);
+        out.append(batch, chunk, Kind::Sphere, &found);
+    }
+    for chunk in sorted.by_kind[Kind::Triangle as usize].chunks(D::WIDTH) {
+        let found = triangles::<D>(prepared, batch, chunk);
+        out.append(batch, chunk, Kind::Triangle, &found);
+    }
+    for chunk in sorted.by_kind[Kind::Polygon as usize].chunks(D::WIDTH) {
+        let found = polygons::<D>(prepared, batch, chunk);
+        out.append(batch, chunk, Kind::Polygon, &found);
+    }
+}
+
+/// Surfaces in lanes.
+struct Found<D> {
+    direction: Vector<D>,
+    position: Vector<D>,
+    /// Outward, unit.
+    geometric_normal: Vector<D>,
+    /// On the side of the geometric one, unit; none where they are the same.
+    shading_normal: Option<Vector<D>>,
+}
+
+struct Out<'a, 'b> {
+    prepared: &'a Prepared<'b>,
+    surfaces: &'a mut SurfaceQueue,
+    normals: &'a mut NormalQueue,
+    work: &'a mut Work,
+}
+
+impl Out<'_, '_> {
+    fn append<D: Double>(&mut self, batch: &Batch<'_>, chunk: &[HitRow], kind: Kind, found: &Found<D>) {
+        let first = self.surfaces.len();
+        self.surfaces.set_len(first + chunk.len());
+        self.work.lanes.add(D::WIDTH, chunk.len());
+
+        let zero = D::splat(0.0);
+        let entering = found.direction.dot(found.geometric_normal).lt(zero);
+        let facing =
+            |normal: Vector<D>| Vector::select(entering, normal, -normal);
+        round_rows(found.position, &mut self.surfaces.position, first, chunk.len());
+        round_rows(facing(found.geometric_normal), &mut self.surfaces.geometric_normal, first, chunk.len());
+        if self.prepared.plan.vertex_normals {
+            self.normals.set_len(first + chunk.len());
+            let normal = found.shading_normal.unwrap_or(found.geometric_normal);
+            round_rows(facing(normal), &mut self.normals.shading_normal, first, chunk.len());
+        }
+        let entering = entering.bits();
+        let geometry = &self.prepared.scene.geometry;
+        for (lane, row) in chunk.iter().enumerate() {
+            let at = first + lane;
+            self.surfaces.ray[at] = row.ray;
+            // A ray that stays on this side is outside if this one came from outside.
+            self.surfaces.departure[at] = row.id << 1 | u32::from(entering >> lane & 1 == 0);
+            self.surfaces.material[at] = material_of(geometry, (kind, row.index as usize)).0;
+            for axis in 0..3 {
+                self.surfaces.direction[axis][at] = batch.rays.direction[axis][row.ray as usize];
+            }
+        }
+    }
+}
+
+/// Lanes may reach beyond the last row of a column; only rows are written.
+#[inline(always)]
+fn round_rows<D: Double>(
+    vector: Vector<D>,
+    columns: &mut [super::column::Column<f32>; 3],
+    row: usize,
+    count: usize,
+) {
+    let mut rounded = [[0.0; 8]; 3];
+    let [x, y, z] = &mut rounded;
+    vector.x.round(x);
+    vector.y.round(y);
+    vector.z.round(z);
+    for (column, rounded) in columns.iter_mut().zip(rounded) {
+        column[row..row + count].copy_from_slice(&rounded[..count]);
+    }
+}
+
+/// Values of rows in lanes; lanes without a row repeat the last.
+#[inline(always)]
+fn gather<D: Double, const N: usize>(chunk: &[HitRow], value: impl Fn(&HitRow) -> [f32; N]) -> [D; N] {
+    let mut columns = [[0.0; 8]; N];
+    for lane in 0..D::WIDTH {
+        let values = value(&chunk[lane.min(chunk.len() - 1)]);
+        for (column, value) in columns.iter_mut().zip(values) {
+            column[lane] = value;
+        }
+    }
+    columns.map(|column| D::widen(&column))
+}
+
+#[inline(always)]
+fn gather_rays<D: Double>(batch: &Batch<'_>, chunk: &[HitRow]) -> [Vector<D>; 2] {
+    let [ox, oy, oz, dx, dy, dz] = gather::<D, 6>(chunk, |row| {
+        let at = |column: &[f32]| column[row.ray as usize];
+        let ([ox, oy, oz], [dx, dy, dz]) = (&batch.rays.origin, &batch.rays.direction);
+        [at(ox), at(oy), at(oz), at(dx), at(dy), at(dz)]
+    });
+    [Vector::new(ox, oy, oz), Vector::new(dx, dy, dz)]
+}
+
+/// The root of the quadratic (see `kernel::sphere`) that the kernel chose, in f64; for a ray that starts on this sphere the
+/// one that is not 0.
+fn spheres<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
+    let [origin, direction] = gather_rays::<D>(batch, chunk);
+    let [x, y, z, radius, t, own] = gather::<D, 6>(chunk, |row| {
+        let sphere = &prepared.scene.geometry.spheres[row.index as usize];
+        let [x, y, z] = prepared.scale.position(sphere.center).to_array();
+        let ray = row.ray as usize;
+        let is_own = batch.departures.get(ray).is_some_and(|departure| departure >> 1 == row.id);
+        let t = batch.hits.t[ray - batch.first];
+        [x, y, z, prepared.scale.length(sphere.radius), t, f32::from(u8::from(is_own))]
+    });
+    let zero = D::splat(0.0);
+    let center = Vector::new(x, y, z);
+    let from_center = origin - center;
+    let a = direction.length_squared();
+    let closest_t = -(from_center.dot(direction) / a);
+    let closest = from_center + direction * closest_t;
+    // The kernel may have met a sphere that the ray misses by rounding.
+    let half_squared = (radius * radius - closest.length_squared()).max(zero);
+    let half_t = (half_squared / a).sqrt();
+    let (near, far) = (closest_t - half_t, closest_t + half_t);
+    let root = D::select((near - t).abs().le((far - t).abs()), near, far);
+    let root = D::select(own.gt(zero), closest_t + closest_t, root);
+    let normal = (from_center + direction * root).normalized(D::splat(1.0));
+    Found { direction, position: center + normal * radius, geometric_normal: normal, shading_normal: None }
+}
+
+/// The barycentric weights of the hit, in f64. Source: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
+/// Intersection", 1997. Weights that rounding has taken out of the triangle are brought back.
+fn triangles<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
+    let geometry = &prepared.scene.geometry;
+    let [origin, direction] = gather_rays::<D>(batch, chunk);
+    let corner = |which: usize| {
+        let [x, y, z] = gather::<D, 3>(chunk, |row| {
+            let vertex = geometry.triangles[row.index as usize].vertices[which];
+            prepared.scale.position(geometry.vertices[vertex as usize]).to_array()
+        });
+        Vector::new(x, y, z)
+    };
+    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let first = corner(0);
+    let [edge_1, edge_2] = [corner(1) - first, corner(2) - first];
+    let from_first = origin - first;
+    let across = direction.cross(edge_2);
+    let determinant = edge_1.dot(across);
+    let weight_1 = (from_first.dot(across) / determinant).max(zero).min(one);
+    let weight_2 = direction.dot(from_first.cross(edge_1)) / determinant;
+    let weight_2 = weight_2.max(zero).min(one - weight_1);
+    let normal = edge_1.cross(edge_2).normalized(one);
+    let shading_normal = prepared.plan.vertex_normals.then(|| {
+        let weight_0 = one - weight_1 - weight_2;
+        let at = |which: usize| {
+            let [x, y, z] = gather::<D, 3>(chunk, |row| {
+                geometry.triangles[row.index as usize]
+                    .normals
+                    .map_or(Vec3::ZERO, |normals| geometry.normals[normals[which] as usize])
+                    .to_array()
+            });
+            Vector::new(x, y, z)
+        };
+        on_side_of(normal, at(0) * weight_0 + at(1) * weight_1 + at(2) * weight_2)
+    });
+    Found {
+        direction,
+        position: first + edge_1 * weight_1 + edge_2 * weight_2,
+        geometric_normal: normal,
+        shading_normal,
+    }
+}
+
+/// Where the ray meets the plane, in f64, put onto the plane. A plane seen so nearly edge-on that f64 cannot tell where it
+/// is met keeps the kernel's t, which lies between the corners'.
+fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
+    let geometry = &prepared.scene.geometry;
+    let [origin, direction] = gather_rays::<D>(batch, chunk);
+    let [x, y, z, t] = gather::<D, 4>(chunk, |row| {
+        let first = geometry.polygons[row.index as usize].vertices.start as usize;
+        let [x, y, z] = prepared.scale.position(geometry.vertices[first]).to_array();
+        [x, y, z, batch.hits.t[row.ray as usize - batch.first]]
+    });
+    let point = Vector::new(x, y, z);
+    let mut columns = [[0.0; 8]; 3];
+    for lane in 0..D::WIDTH {
+        let row = chunk[lane.min(chunk.len() - 1)];
+        let normal = prepared.polygon_normals[row.index as usize].to_array();
+        for (column, component) in columns.iter_mut().zip(normal) {
+            column[lane] = component;
+        }
+    }
+    let [nx, ny, nz] = columns.map(|column| D::load(&column));
+    let normal = Vector::new(nx, ny, nz);
+    let slope = normal.dot(direction);
+    let is_edge_on = slope.abs().lt(D::splat(1.0 / f64::from(1 << 20)) * direction.length());
+    let t = D::select(is_edge_on, t, normal.dot(point - origin) / slope);
+    let near = origin + direction * t;
+    let position = near - normal * (near - point).dot(normal);
+    let shading_normal = prepared.plan.vertex_normals.then(|| {
+        let mean = patch_normals(prepared, chunk, position, normal);
+        on_side_of(normal, mean)
+    });
+    Found { direction, position, geometric_normal: normal, shading_normal }
+}
+
+/// Unit and on the side of n_g; n_g itself where the mean of the vertices' normals has no direction.
+fn on_side_of<D: Double>(geometric: Vector<D>, mean: Vector<D>) -> Vector<D> {
+    let zero = D::splat(0.0);
+    let length = mean.length();
+    let has_direction = length.gt(zero);
+    let unit = mean * (D::splat(1.0) / D::select(has_direction, length, D::splat(1.0)));
+    let turned = Vector::select(unit.dot(geometric).lt(zero), -unit, unit);
+    Vector::select(has_direction, turned, geometric)
+}
+
+/// The barycentric mean of a patch's normals, row by row; zero where a polygon has none.
+fn patch_normals<D: Double>(
+    prepared: &Prepared<'_>,
+    chunk: &[HitRow],
+    position: Vector<D>,
+    normal: Vector<D>,
+) -> Vector<D> {
+    let mut rows = [[[0.0; 8]; 3]; 2];
+    for (columns, vector) in rows.iter_mut().zip([position, normal]) {
+        for (column, component) in columns.iter_mut().zip([vector.x, vector.y, vector.z]) {
+            component.store(column);
+        }
+    }
+    let mut means = [[0.0; 8]; 3];
+    for (lane, row) in chunk.iter().enumerate() {
+        let [position, plane] = rows.map(|columns| DVec3::from(columns.map(|column| column[lane])));
+        let polygon = &prepared.scene.geometry.polygons[row.index as usize];
+        let mean = patch_normal(prepared, polygon, position, plane);
+        for (column, component) in means.iter_mut().zip(mean.to_array()) {
+            column[lane] = component;
+        }
+    }
+    let [x, y, z] = means.map(|column| D::load(&column));
+    Vector::new(x, y, z)
+}
+
+/// The mean over the triangle of the fan (0, k, k + 1) that holds the point; where none does, over the one that it is least
+/// outside of.
+fn patch_normal(prepared: &Prepared<'_>, polygon: &Polygon, position: DVec3, plane: DVec3) -> DVec3 {
+    let geometry: &Geometry = &prepared.scene.geometry;
+    let Some(run) = polygon.normals.clone() else { return DVec3::ZERO };
+    let normals = &geometry.normals[run.start as usize..run.end as usize];
+    let corners = &geometry.vertices[polygon.vertices.start as usize..polygon.vertices.end as usize];
+    let corner = |index: usize| prepared.scale.position(corners[index]).as_dvec3();
+    let first = corner(0);
+    let mut best = (f64::NEG_INFINITY, DVec3::ZERO);
+    for k in 1..corners.len() - 1 {
+        let (edge_1, edge_2, inside) = (corner(k) - first, corner(k + 1) - first, position - first);
+        let area = plane.dot(edge_1.cross(edge_2));
+        if area == 0.0 {
+            continue;
+        }
+        let weight_1 = plane.dot(inside.cross(edge_2)) / area;
+        let weight_2 = plane.dot(edge_1.cross(inside)) / area;
+        let weight_0 = 1.0 - weight_1 - weight_2;
+        let depth = Lanes::min(Lanes::min(weight_0, weight_1), weight_2);
+        // Of equally deep ones the last, as in the reference.
+        if depth >= best.0 {
+            let [a, b, c] = [normals[0], normals[k], normals[k + 1]].map(Vec3::as_dvec3);
+            best = (depth, weight_0 * a + weight_1 * b + weight_2 * c);
+        }
+    }
+    best.1
+}
+
+/// Reads the surfaces' columns in lanes.
+pub(super) struct SurfaceLanes<D> {
+    pub(super) direction: Vector<D>,
+    pub(super) position: Vector<D>,
+    pub(super) geometric_normal: Vector<D>,
+    pub(super) shading_normal: Vector<D>,
+}
+
+impl<D: Double> SurfaceLanes<D> {
+    #[inline(always)]
+    pub(super) fn read(surfaces: &SurfaceQueue, normals: &NormalQueue, row: usize) -> Self {
+        let geometric_normal = widen_vector(&surfaces.geometric_normal, row);
+        let shading_normal = if normals.len() == 0 {
+            geometric_normal
+        } else {
+            widen_vector(&normals.shading_normal, row)
+        };
+        Self {
+            direction: widen_vector(&surfaces.direction, row),
+            position: widen_vector(&surfaces.position, row),
+            geometric_normal,
+            shading_normal,
+        }
+    }
+}
