@@ -95,13 +95,14 @@ impl Hierarchy {
         first.map(|(meeting, primitive)| Hit { t: meeting.t, primitive })
     }
 
-    /// Whether something that casts a shadow lies at 0 < t < `end`.
-    pub(super) fn occluded(&self, ray: &Ray, end: f64) -> bool {
+    /// Whether something that casts a shadow lies at 0 < t < `end`, apart from surfaces that the end is on, if it may be
+    /// `off_surface` from those: a length.
+    pub(super) fn occluded(&self, ray: &Ray, end: f64, off_surface: f64) -> bool {
+        let is_before_end =
+            |meeting: Meeting| meeting.t < end && (end - meeting.t) * meeting.approach >= off_surface;
         let mut occluded = false;
         self.visit(ray, end, |primitive| {
-            if primitive.casts_shadow && primitive.intersect(ray).is_some_and(|meeting| meeting.t < end) {
-                occluded = true;
-            }
+            occluded |= primitive.casts_shadow && primitive.intersect(ray).is_some_and(is_before_end);
             if occluded { f64::NEG_INFINITY } else { end }
         });
         occluded
@@ -325,7 +326,7 @@ mod tests {
                 let ray = Ray::new(origin.as_dvec3(), direction.as_dvec3(), None);
                 let expected = closest_of_all(&hierarchy, &ray);
                 prop_assert_eq!(hierarchy.closest(&ray).map(|hit| (hit.t, hit.primitive.id.0)), expected);
-                prop_assert_eq!(hierarchy.occluded(&ray, 1.0), expected.is_some_and(|(t, _)| t < 1.0));
+                prop_assert_eq!(hierarchy.occluded(&ray, 1.0, 0.0), expected.is_some_and(|(t, _)| t < 1.0));
             }
         }
     }

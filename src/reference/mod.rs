@@ -8,13 +8,16 @@
 //! - `shape`: where a ray meets a sphere, a triangle or a polygon, and what the surface is like there
 //! - `hierarchy`: the same answers without trying every primitive
 //! - `optics`: mirror and refraction directions, and the shares of light that take them
+//! - `precision`: what rays and hits are kept in, f64 or f32
 //! - `tracer`: the recursion that puts these together
 
 mod camera;
 mod hierarchy;
 mod optics;
+mod precision;
 mod ray;
 mod shape;
 mod tracer;
 
+pub use precision::Precision;
 pub use tracer::Tracer;

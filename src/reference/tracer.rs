@@ -3,6 +3,7 @@
 use super::camera::View;
 use super::hierarchy::{Hierarchy, Hit};
 use super::optics::{Boundary, beer, mirrored};
+use super::precision::Precision;
 use super::ray::{Departure, Ray};
 use super::shape::{Meeting, Primitive, Surface};
 use crate::film::SamplePattern;
@@ -17,6 +18,7 @@ pub struct Tracer<'a> {
     view: View,
     hierarchy: Hierarchy,
     samples: SamplePattern,
+    precision: Precision,
     stop: &'a AtomicBool,
 }
 
@@ -25,7 +27,8 @@ struct Shading<'a> {
     material: &'a Material,
     surface: Surface,
     primitive: &'a Primitive,
-    /// Unit, along the ray.
+    precision: Precision,
+    /// Along the ray; unit as far as the precision goes.
     direction: DVec3,
     /// Whether the ray comes from outside.
     entering: bool,
@@ -46,11 +49,18 @@ impl<'a> Tracer<'a> {
     /// Builds the hierarchy. Once `stop` is set, rays return black, so that even a deep tree of rays ends soon.
     #[must_use]
     pub fn new(scene: &'a Scene, stop: &'a AtomicBool) -> Self {
+        Self::with_precision(scene, Precision::F64, stop)
+    }
+
+    /// The same, with a say in what rays and hits are kept in.
+    #[must_use]
+    pub fn with_precision(scene: &'a Scene, precision: Precision, stop: &'a AtomicBool) -> Self {
         Self {
             scene,
             view: View::new(&scene.camera, &scene.image),
             hierarchy: Hierarchy::new(Primitive::all(&scene.geometry, &scene.materials)),
             samples: SamplePattern::new(&scene.render),
+            precision,
             stop,
         }
     }
@@ -58,15 +68,21 @@ impl<'a> Tracer<'a> {
     /// The mean of a pixel's samples, linear RGB; x and y count from the full image's top left. Means nothing once the
     /// tracer was told to stop.
     pub fn pixel(&self, x: u32, y: u32, counts: &mut RayCounts) -> [f64; 3] {
-        let row_from_bottom = self.scene.image.height - 1 - y;
-        let corner = DVec2::new(f64::from(x), f64::from(row_from_bottom));
         let mut sum = DVec3::ZERO;
         for s in 0..self.samples.count() {
-            let ray = self.view.ray(corner + DVec2::from(self.samples.position(x, y, s)));
+            let (origin, direction) = self.through_sample(x, y, s);
+            let ray = self.precision.ray(origin, direction, None);
             counts.primary += 1;
             sum += self.radiance(&ray, DVec3::ONE, 0, counts);
         }
         (sum / f64::from(self.samples.count())).to_array()
+    }
+
+    /// Origin and direction of the primary ray of a pixel's sample.
+    fn through_sample(&self, x: u32, y: u32, s: u32) -> (DVec3, DVec3) {
+        let row_from_bottom = self.scene.image.height - 1 - y;
+        let corner = DVec2::new(f64::from(x), f64::from(row_from_bottom));
+        self.view.ray(corner + DVec2::from(self.samples.position(x, y, s)))
     }
 
     /// What arrives along a ray. Its weight is how much of that reaches the eye.
@@ -107,13 +123,14 @@ impl<'a> Tracer<'a> {
     }
 
     fn shading<'s>(&'s self, ray: &Ray, hit: &Hit<'s>) -> Shading<'s> {
-        let surface = hit.primitive.surface(ray, hit.t);
-        let direction = ray.direction.normalize();
+        let surface = self.precision.surface(hit.primitive.surface(ray, hit.t));
+        let direction = ray.direction;
         let entering = direction.dot(surface.geometric_normal) < 0.0;
         let turn = if entering { 1.0 } else { -1.0 };
         Shading {
             material: &self.scene.materials[hit.primitive.material.0 as usize],
             primitive: hit.primitive,
+            precision: self.precision,
             direction,
             entering,
             facing_geometric: turn * surface.geometric_normal,
@@ -162,11 +179,11 @@ impl<'a> Tracer<'a> {
                 // Rounding must not put a surface that the light lies on in front of the light.
                 let coordinates = light.abs().max(ray.origin.abs()).max_element();
                 let uncertainty = Meeting::ROUNDING * coordinates / ray.direction.length();
-                !self.hierarchy.occluded(&ray, 1.0 - uncertainty)
+                !self.hierarchy.occluded(&ray, 1.0 - uncertainty, self.precision.reach(ray.direction))
             }
             Light::Directional { direction, .. } => {
                 let ray = shading.leave(true, -direction.as_dvec3());
-                !self.hierarchy.occluded(&ray, f64::INFINITY)
+                !self.hierarchy.occluded(&ray, f64::INFINITY, 0.0)
             }
         }
     }
@@ -206,7 +223,9 @@ impl Shading<'_> {
     /// A ray that leaves the surface, on the side the ray came from or on the other.
     fn leave(&self, same_side: bool, direction: DVec3) -> Ray {
         let inward = self.entering != same_side;
-        Ray::new(self.surface.point, direction, Some(Departure { from: self.primitive.id, inward }))
+        let off_surface = self.precision.reach(self.surface.point);
+        let departure = Departure { from: self.primitive.id, inward, off_surface };
+        self.precision.ray(self.surface.point, direction, Some(departure))
     }
 }
 
@@ -289,7 +308,7 @@ mod tests {
             if shading.entering {
                 hits += 1;
                 let back = shading.leave(true, eye - shading.surface.point);
-                let hidden = tracer.hierarchy.occluded(&back, 1.0);
+                let hidden = tracer.hierarchy.occluded(&back, 1.0, 0.0);
                 assert!(!hidden, "at {point} of the solid at {center}, step {step}");
             }
         });
