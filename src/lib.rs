@@ -39,4 +39,5 @@ pub mod rays;
 pub mod reference;
 pub mod render;
 pub mod scene;
+mod signature;
 mod whole_file;

@@ -9,6 +9,7 @@
 //! - `hierarchy`: the same answers without trying every primitive
 //! - `optics`: mirror and refraction directions, and the shares of light that take them
 //! - `precision`: what rays and hits are kept in, f64 or f32
+//! - `record`: what is kept of a tree of rays besides its light
 //! - `tracer`: the recursion that puts these together
 
 mod camera;
@@ -16,6 +17,7 @@ mod hierarchy;
 mod optics;
 mod precision;
 mod ray;
+mod record;
 mod shape;
 mod tracer;
 

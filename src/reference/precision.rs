@@ -33,7 +33,7 @@ impl Precision {
     }
 
     /// A hit as it is kept.
-    pub(super) fn surface(self, surface: Surface) -> Surface {
+    pub(super) fn surface(self, surface: &Surface) -> Surface {
         Surface {
             point: self.kept(surface.point),
             geometric_normal: self.kept(surface.geometric_normal),
