@@ -1,6 +1,7 @@
 //! The recursion: what a ray sees is the light at its hit, and shares of what its mirrored and refracted rays see.
 
 use super::camera::View;
+use super::certainty::{PrimaryHit, certain_hit};
 use super::hierarchy::{Hierarchy, Hit};
 use super::optics::{Boundary, beer, mirrored};
 use super::precision::Precision;
@@ -97,6 +98,16 @@ impl<'a> Tracer<'a> {
             let (_, node) = self.sample(x, y, s, counts);
             signature::with_sample(samples, node)
         })
+    }
+
+    /// What the ray of a pixel's sample s sees, in f64 whatever the tracer's precision, and whether an engine in f32 has to
+    /// see the same.
+    #[must_use]
+    pub fn primary_hit(&self, x: u32, y: u32, s: u32) -> PrimaryHit {
+        let (origin, direction) = self.through_sample(x, y, s);
+        let ray = Ray::new(origin, direction, None);
+        let id = self.hierarchy.closest(&ray).map(|hit| hit.primitive.id);
+        PrimaryHit { id, is_certain: certain_hit(&self.hierarchy, &ray) == Some(id) }
     }
 
     fn sample<R: Record>(&self, x: u32, y: u32, s: u32, counts: &mut RayCounts) -> (DVec3, R) {
