@@ -1,5 +1,6 @@
 //! A number that tells one tree of rays from another: which primitive each ray hit and which lights each hit found
-//! visible, and nothing else. Two engines that agree on it differ in a pixel by the rounding of its colour alone.
+//! visible, and nothing else. Where two engines agree on it, no decision parts their colours, only rounding and what
+//! mirrors and lenses make of it.
 //!
 //! With wrapping 64-bit arithmetic and [`mix`],
 //!
@@ -10,9 +11,9 @@
 //! signature  = h over the samples of the pixel: from h = 0, h = mix(h + node)
 //! ```
 //!
-//! with the nodes of both children, 0 for a child that was not spawned, and [`Shadow`]'s codes. A hit's lights
-//! are known when it is shaded and its children only later, so an engine without recursion keeps id and lights and folds
-//! children into parents from the deepest rays up.
+//! with the nodes of both children, 0 for a child that was not spawned, and [`Shadow`]'s codes. A hit's lights are known
+//! when it is shaded and its children only later, so an engine without recursion keeps id and lights and folds children
+//! into parents from the deepest rays up.
 
 use crate::scene::PrimitiveId;
 

@@ -363,4 +363,73 @@ mod tests {
         }
         assert!(certain > 500 && changed > 100, "{certain} certain, {changed} changed");
     }
+
+    /// The closest hit in f32 with the usual formulas: what an engine may honestly answer.
+    fn single(geometry: &Geometry, ray: &Ray) -> Option<PrimitiveId> {
+        let (origin, direction) = (ray.origin.as_vec3(), ray.direction.as_vec3());
+        let spheres = geometry.spheres.iter().filter_map(|sphere| {
+            let from_center = origin - sphere.center;
+            let middle = -from_center.dot(direction);
+            let distance = (from_center + middle * direction).length();
+            let half_chord_squared = (sphere.radius - distance) * (sphere.radius + distance);
+            let half_chord = half_chord_squared.sqrt();
+            let near = middle - half_chord;
+            let t = if near > 0.0 { near } else { middle + half_chord };
+            (half_chord_squared >= 0.0).then_some((t, sphere.id))
+        });
+        let z = direction.abs().max_position();
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let triangles = geometry.triangles.iter().filter_map(|triangle| {
+            let [a, b, c] = triangle.vertices.map(|index| {
+                let v = geometry.vertices[index as usize] - origin;
+                let share = v[z] / direction[z];
+                Vec3::new(v[x] - direction[x] * share, v[y] - direction[y] * share, share)
+            });
+            let area = |a: Vec3, b: Vec3| a.x * b.y - a.y * b.x;
+            let (u, v, w) = (area(b, c), area(c, a), area(a, b));
+            let is_hit = u.min(v).min(w) >= 0.0 || u.max(v).max(w) <= 0.0;
+            is_hit.then(|| ((u * a.z + v * b.z + w * c.z) / (u + v + w), triangle.id))
+        });
+        let hits = spheres.chain(triangles).filter(|(t, _)| *t > 0.0);
+        hits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| id)
+    }
+
+    #[test]
+    fn what_is_certain_is_seen_by_an_engine_in_f32() {
+        let (geometry, mut count) = heap();
+        let hierarchy = hierarchy(&geometry);
+        let (mut certain, mut different) = (0, 0);
+        for step in 0..40_000 {
+            let origin = (4.0 * noise3(&mut count)).as_vec3().as_dvec3();
+            let past = 1.2 * band(origin, 5.0) * noise3(&mut count);
+            // At an edge, and at what is about a limb.
+            let target = if step % 2 == 0 {
+                let triangle = &geometry.triangles[count as usize % geometry.triangles.len()];
+                let [a, b, _] = triangle.vertices.map(|index| geometry.vertices[index as usize].as_dvec3());
+                a.lerp(b, noise(&mut count).abs())
+            } else {
+                let sphere = &geometry.spheres[count as usize % geometry.spheres.len()];
+                let to_center = sphere.center.as_dvec3() - origin;
+                let (radius, distance) = (f64::from(sphere.radius), to_center.length());
+                let aside = to_center.cross(noise3(&mut count)).normalize();
+                // The point of the limb in that direction.
+                let sine = radius / distance;
+                let along = to_center - radius * sine * to_center / distance;
+                origin + along + radius * (1.0 - sine * sine).sqrt() * aside
+            };
+            let ray = Ray::new(origin, (target + past - origin).normalize(), None);
+            let found = single(&geometry, &ray);
+            match certain_hit(&hierarchy, &ray) {
+                Some(verdict) => {
+                    certain += 1;
+                    assert_eq!(found, verdict, "{ray:?}");
+                }
+                None => {
+                    let truth = hierarchy.closest(&ray).map(|hit| hit.primitive.id);
+                    different += u32::from(found != truth);
+                }
+            }
+        }
+        assert!(certain > 5000 && different > 200, "{certain} certain, {different} different");
+    }
 }

@@ -4,6 +4,10 @@
 //! reflectance and Beer's law. It reads the scene and the film's sample positions and shares no arithmetic with any
 //! other engine, so that a mistake has to be made twice to go unseen.
 //!
+//! To judge an engine in single precision, it also says how near such an engine can come ([`Precision::F32Queues`]), where
+//! it has to see what the truth is ([`Tracer::primary_hit`]), and whether it decided alike all the way
+//! ([`Tracer::signature`]).
+//!
 //! - `camera`: from a point of the image to a ray
 //! - `shape`: where a ray meets a sphere, a triangle or a polygon, and what the surface is like there
 //! - `hierarchy`: the same answers without trying every primitive
