@@ -43,6 +43,7 @@ pub mod rays;
 pub mod reference;
 pub mod render;
 pub mod scene;
+mod signature;
 mod traverse;
 mod wavefront;
 mod whole_file;

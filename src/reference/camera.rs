@@ -1,6 +1,5 @@
 //! From a point of the image to the ray that sees it.
 
-use super::ray::Ray;
 use crate::scene::{Camera, ImageSettings, Projection, Window};
 use glam::{DVec2, DVec3};
 
@@ -50,13 +49,14 @@ impl View {
         Self { eye, u, v, w, low, high, distance, pixels }
     }
 
-    /// The ray through a point of the image, in pixels from its bottom left corner; its direction has unit length.
-    pub(super) fn ray(&self, point: DVec2) -> Ray {
+    /// Origin and direction of the ray through a point of the image, in pixels from its bottom left corner; the direction
+    /// has unit length.
+    pub(super) fn ray(&self, point: DVec2) -> (DVec3, DVec3) {
         let on_plane = self.low + (self.high - self.low) * point / self.pixels;
         let offset = on_plane.x * self.u + on_plane.y * self.v;
         match self.distance {
-            Some(distance) => Ray::new(self.eye, (offset - distance * self.w).normalize(), None),
-            None => Ray::new(self.eye + offset, -self.w, None),
+            Some(distance) => (self.eye, (offset - distance * self.w).normalize()),
+            None => (self.eye + offset, -self.w),
         }
     }
 }

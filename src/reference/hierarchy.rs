@@ -75,7 +75,7 @@ impl Hierarchy {
         let slack = 2.0 * ROUNDING * scale / Meeting::LEAST_COSINE;
         let mut nearest: Option<Meeting> = None;
         let mut candidates: Vec<(Meeting, &Primitive)> = Vec::new();
-        self.visit(ray, f64::INFINITY, |primitive| {
+        self.visit(ray, self.padding(ray), f64::INFINITY, |primitive| {
             let Some(meeting) = primitive.intersect(ray) else {
                 return nearest.map_or(f64::INFINITY, |nearest| nearest.t + slack);
             };
@@ -95,21 +95,38 @@ impl Hierarchy {
         first.map(|(meeting, primitive)| Hit { t: meeting.t, primitive })
     }
 
-    /// Whether something that casts a shadow lies at 0 < t < `end`.
-    pub(super) fn occluded(&self, ray: &Ray, end: f64) -> bool {
+    /// Whether something that casts a shadow lies at 0 < t < `end`, apart from surfaces that the end is on, if it may be
+    /// `off_surface` from those: a length.
+    pub(super) fn occluded(&self, ray: &Ray, end: f64, off_surface: f64) -> bool {
+        let is_before_end =
+            |meeting: Meeting| meeting.t < end && (end - meeting.t) * meeting.approach >= off_surface;
         let mut occluded = false;
-        self.visit(ray, end, |primitive| {
-            if primitive.casts_shadow && primitive.intersect(ray).is_some_and(|meeting| meeting.t < end) {
-                occluded = true;
-            }
+        self.visit(ray, self.padding(ray), end, |primitive| {
+            occluded |= primitive.casts_shadow && primitive.intersect(ray).is_some_and(is_before_end);
             if occluded { f64::NEG_INFINITY } else { end }
         });
         occluded
     }
 
-    /// Calls `test` for primitives whose box the ray meets before `end`; `test` returns the new end.
-    fn visit<'a>(&'a self, ray: &Ray, mut end: f64, mut test: impl FnMut(&'a Primitive) -> f64) {
-        let slabs = Slabs::new(ray, self.extent);
+    /// Largest magnitude of a coordinate.
+    pub(super) fn extent(&self) -> f64 {
+        self.extent
+    }
+
+    /// Covers the rounding of the slab test and of the primitives' own.
+    fn padding(&self, ray: &Ray) -> f64 {
+        ROUNDING * (self.extent + ray.origin.abs().max_element())
+    }
+
+    /// Calls `test` for primitives whose box, grown by `padding`, the ray meets before `end`; `test` returns the new end.
+    pub(super) fn visit<'a>(
+        &'a self,
+        ray: &Ray,
+        padding: f64,
+        mut end: f64,
+        mut test: impl FnMut(&'a Primitive) -> f64,
+    ) {
+        let slabs = Slabs::new(ray, padding);
         let mut stack = [0; STACK_SIZE];
         let mut waiting = usize::from(!self.nodes.is_empty());
         while waiting > 0 {
@@ -146,10 +163,9 @@ struct Slabs {
 }
 
 impl Slabs {
-    fn new(ray: &Ray, extent: f64) -> Self {
-        let padding = DVec3::splat(ROUNDING * (extent + ray.origin.abs().max_element()));
+    fn new(ray: &Ray, padding: f64) -> Self {
         let backwards = ray.direction.to_array().map(f64::is_sign_negative);
-        Self { origin: ray.origin, inverse: ray.direction.recip(), backwards, padding }
+        Self { origin: ray.origin, inverse: ray.direction.recip(), backwards, padding: DVec3::splat(padding) }
     }
 
     /// Whether the ray is inside the box for some 0 ≤ t ≤ `end`.
@@ -325,7 +341,7 @@ mod tests {
                 let ray = Ray::new(origin.as_dvec3(), direction.as_dvec3(), None);
                 let expected = closest_of_all(&hierarchy, &ray);
                 prop_assert_eq!(hierarchy.closest(&ray).map(|hit| (hit.t, hit.primitive.id.0)), expected);
-                prop_assert_eq!(hierarchy.occluded(&ray, 1.0), expected.is_some_and(|(t, _)| t < 1.0));
+                prop_assert_eq!(hierarchy.occluded(&ray, 1.0, 0.0), expected.is_some_and(|(t, _)| t < 1.0));
             }
         }
     }

@@ -4,17 +4,29 @@
 //! reflectance and Beer's law. It reads the scene and the film's sample positions and shares no arithmetic with any
 //! other engine, so that a mistake has to be made twice to go unseen.
 //!
+//! To judge an engine in single precision, it also says how near such an engine can come ([`Precision::F32Queues`]), where
+//! it has to see what the truth is ([`Tracer::primary_hit`]), and whether it decided alike all the way
+//! ([`Tracer::signature`]).
+//!
 //! - `camera`: from a point of the image to a ray
 //! - `shape`: where a ray meets a sphere, a triangle or a polygon, and what the surface is like there
 //! - `hierarchy`: the same answers without trying every primitive
+//! - `certainty`: whether an engine in f32 could honestly see another primitive
 //! - `optics`: mirror and refraction directions, and the shares of light that take them
+//! - `precision`: what rays and hits are kept in, f64 or f32
+//! - `record`: what is kept of a tree of rays besides its light
 //! - `tracer`: the recursion that puts these together
 
 mod camera;
+mod certainty;
 mod hierarchy;
 mod optics;
+mod precision;
 mod ray;
+mod record;
 mod shape;
 mod tracer;
 
+pub use certainty::PrimaryHit;
+pub use precision::Precision;
 pub use tracer::Tracer;

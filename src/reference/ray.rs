@@ -20,6 +20,8 @@ pub(super) struct Ray {
 pub(super) struct Departure {
     pub(super) from: PrimitiveId,
     pub(super) inward: bool,
+    /// How far the origin may be off that surface, and off all that touches it there: a length.
+    pub(super) off_surface: f64,
 }
 
 impl Ray {

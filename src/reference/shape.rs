@@ -21,6 +21,8 @@ pub(super) struct Meeting {
     pub(super) t: f64,
     /// More than rounding can have moved t: the rounding of the coordinates, seen at the angle of the ray.
     pub(super) uncertainty: f64,
+    /// The way along the normal that the ray makes for each unit of t: a length is so much of t, divided by this.
+    pub(super) approach: f64,
 }
 
 pub(super) enum Shape {
@@ -102,9 +104,13 @@ impl Primitive {
         let meeting = |t: f64, normal: DVec3| {
             let length = ray.direction.length();
             let cosine = (normal.dot(ray.direction).abs() / length).max(Meeting::LEAST_COSINE);
-            let uncertainty = rounding / (cosine * length);
-            let least = if ray.departure.is_some() && departure.is_none() { uncertainty } else { 0.0 };
-            (t > least).then_some(Meeting { t, uncertainty })
+            let approach = cosine * length;
+            let uncertainty = rounding / approach;
+            let least = match ray.departure {
+                Some(other) if departure.is_none() => uncertainty + other.off_surface / approach,
+                _ => 0.0,
+            };
+            (t > least).then_some(Meeting { t, uncertainty, approach })
         };
         match (&self.shape, departure) {
             (Shape::Sphere { center, radius }, Some(Departure { inward: true, .. })) => {

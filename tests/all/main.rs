@@ -9,6 +9,7 @@
 mod bad_input;
 mod command_line;
 mod example_scenes;
+mod floor;
 mod formats;
 mod model;
 mod real_scenes;

@@ -1,65 +1,8 @@
 //! No holes and no acne, at any scale: what rounding must not do to a picture.
 
-use crate::support::{picture, render_whole, scene};
+use crate::support::{STILL_LIFE, ball, picture, render_whole, scaled, scene};
 use glam::Vec3;
 use wavelane::film::Image;
-use wavelane::scene::{Light, Scene};
-
-const STILL_LIFE: &str = r#"
-[image]
-size = [64, 48]
-background = [0.1, 0.2, 0.3]
-[camera]
-eye = [1.5, -4, 2]
-target = [0, 0, 0.5]
-up = [0, 0, 1]
-fov = 40
-[[light]]
-position = [3, -2, 4]
-[[light]]
-direction = [1, 0.5, -1]
-intensity = 0.3
-[material.matte]
-diffuse = 0.7
-[material.mirror]
-mirror = 0.8
-[material.glass]
-ior = 1.5
-[[sphere]]
-center = [0, 0, 0.5]
-radius = 0.5
-material = "glass"
-[[sphere]]
-center = [1, 0, 0.5]
-radius = 0.5
-material = "mirror"
-[[triangle]]
-vertices = [[-1, 1, 0], [-0.5, 0.25, 0], [-1, 0.5, 1]]
-material = "matte"
-[[polygon]]
-vertices = [[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]]
-material = "matte"
-"#;
-
-/// Multiplies every length of a scene by a power of two, which rounds nothing.
-fn scaled(mut scene: Scene, exponent: i32) -> Scene {
-    let factor = 2.0_f32.powi(exponent);
-    scene.camera.eye *= factor;
-    scene.camera.target *= factor;
-    for light in &mut scene.lights {
-        if let Light::Point { position, .. } = light {
-            *position *= factor;
-        }
-    }
-    for sphere in &mut scene.geometry.spheres {
-        sphere.center *= factor;
-        sphere.radius *= factor;
-    }
-    for vertex in &mut scene.geometry.vertices {
-        *vertex *= factor;
-    }
-    scene
-}
 
 #[test]
 fn a_scene_looks_the_same_at_every_scale() {
@@ -89,47 +32,6 @@ fn the_picture_does_not_depend_on_threads_or_crop() {
             }
         }
     }
-}
-
-/// A closed ball of triangles or of quadrilaterals, with its corners off any grid, around a centre.
-fn ball(center: Vec3, radius: f32, quads: bool) -> String {
-    let (rings, sectors) = (7, 12);
-    let point = |ring: i32, sector: i32| {
-        let (polar, azimuth) = (
-            std::f32::consts::PI * ring as f32 / rings as f32,
-            std::f32::consts::TAU * (sector % sectors) as f32 / sectors as f32,
-        );
-        let turned = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, 0.7)
-            * Vec3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
-        center + radius * turned
-    };
-    let listed = |points: &[Vec3]| {
-        let points: Vec<String> = points.iter().map(|point| format!("{:?}", point.to_array())).collect();
-        points.join(", ")
-    };
-    let mut toml = String::new();
-    for ring in 0..rings {
-        for sector in 0..sectors {
-            let corners = [
-                point(ring, sector),
-                point(ring + 1, sector),
-                point(ring + 1, sector + 1),
-                point(ring, sector + 1),
-            ];
-            if quads && ring > 0 && ring + 1 < rings {
-                toml += &format!("[[polygon]]\nvertices = [{}]\nmaterial = \"m\"\n", listed(&corners));
-                continue;
-            }
-            for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-                // At the poles one of the two has no area and is left out.
-                toml += &format!(
-                    "[[triangle]]\nvertices = [{}]\nmaterial = \"m\"\n",
-                    listed(&[corners[a], corners[b], corners[c]])
-                );
-            }
-        }
-    }
-    toml
 }
 
 /// Nothing of the background is seen from inside a closed ball, whatever edges the rays of a fine grid pass by.
