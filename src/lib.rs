@@ -35,6 +35,7 @@ pub mod film;
 pub mod load;
 mod math;
 pub mod measure;
+mod prepare;
 pub mod rays;
 pub mod reference;
 pub mod render;

@@ -1,0 +1,87 @@
+//! The binary tree: parted top down, weighed bottom up.
+
+use super::choice::{Choices, LeastCosts, weigh};
+use super::group::Spread;
+use super::split::{halve, part};
+use super::{Bounds, Costs, DEPTH_LIMIT, Item, Kind, word};
+use rayon::prelude::*;
+
+/// Above so many items the two halves are built in parallel.
+const PARALLEL: usize = 4096;
+
+/// An item on its way into place.
+#[derive(Clone, Copy)]
+pub(super) struct Reference {
+    pub(super) bounds: Bounds,
+    pub(super) index: u32,
+    pub(super) weight: u16,
+    pub(super) kind: Kind,
+}
+
+const _: () = assert!(size_of::<Reference>() == 32);
+
+/// A place where a group of items parts in two. A group of n items parts in at most n − 1 places, itself and those within
+/// its halves, so the places of every group are known before it is built: its own first, then those of the left half, then
+/// those of the right.
+#[derive(Clone, Copy)]
+pub(super) struct Fork {
+    pub(super) bounds: Bounds,
+    /// Items that go left.
+    pub(super) left: u32,
+    pub(super) choices: Choices,
+}
+
+impl Fork {
+    const UNUSED: Self = Self { bounds: Bounds::EMPTY, left: 0, choices: Choices::NONE };
+}
+
+pub(super) struct BinaryTree {
+    /// In the order of the leaves.
+    pub(super) references: Vec<Reference>,
+    /// One fewer.
+    pub(super) forks: Vec<Fork>,
+}
+
+pub(super) fn build(items: &[Item], costs: &Costs) -> BinaryTree {
+    let references = items.par_iter().enumerate().map(|(index, item)| {
+        let &Item { bounds, kind, weight } = item;
+        Reference { bounds, index: word(index), weight: weight.max(1), kind }
+    });
+    let mut references: Vec<Reference> = references.collect();
+    let mut forks = vec![Fork::UNUSED; references.len().saturating_sub(1)];
+    if !references.is_empty() {
+        grow(&mut references, &mut forks, 0, costs);
+    }
+    BinaryTree { references, forks }
+}
+
+/// Parts a group that is not empty down to single items, and returns what it costs.
+fn grow(references: &mut [Reference], forks: &mut [Fork], depth: u32, costs: &Costs) -> LeastCosts {
+    let spread = Spread::of(references);
+    let bounds = spread.group.bounds();
+    // More than 0, so that nodes and leaves count where boxes have no area.
+    let area = bounds.half_area().max(f64::MIN_POSITIVE);
+    let fits = references.len() <= costs.largest_leaf.max(1) as usize && spread.group.is_of_one_kind();
+    let as_leaf = if fits { area * f64::from(costs.of_weights(spread.group.weights)) } else { f64::INFINITY };
+    let Some((fork, forks)) = forks.split_first_mut() else { return LeastCosts::of_leaf(as_leaf) };
+    let deep = is_deep(depth, references.len());
+    let middle = if deep { halve(references, &spread) } else { part(references, &spread, costs) };
+    let parallel = references.len() >= PARALLEL;
+    let (left, right) = references.split_at_mut(middle);
+    let (left_forks, right_forks) = forks.split_at_mut(middle - 1);
+    let mut grow_left = || grow(left, left_forks, depth + 1, costs);
+    let mut grow_right = || grow(right, right_forks, depth + 1, costs);
+    let (left_costs, right_costs) =
+        if parallel { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
+    let as_node = area * f64::from(costs.node);
+    let (least_costs, choices) = weigh(&left_costs, &right_costs, as_leaf, as_node);
+    *fork = Fork { bounds, left: word(middle), choices };
+    least_costs
+}
+
+/// Whether the forks below `depth` others must halve from here on to stay within the limit: a cut may leave all items but
+/// one together, and halves of n items need ⌈log₂ n⌉ more forks.
+fn is_deep(depth: u32, count: usize) -> bool {
+    let left_over = count - 1;
+    depth + 1 + left_over.next_power_of_two().ilog2() > DEPTH_LIMIT
+}

@@ -1,0 +1,136 @@
+//! Wide nodes as they lie in memory.
+
+use super::{Bounds, Kind};
+
+/// Children of a wide node: as many as the lanes of a 256-bit vector of f32.
+pub(crate) const WIDTH: usize = 8;
+
+/// A node of up to eight children, one array a plane of their boxes, so that a ray meets eight boxes at once.
+///
+/// | bytes | field |
+/// |---|---|
+/// | 0–95 | `low`: x, y, z of eight children each |
+/// | 96–191 | `high`: likewise |
+/// | 192–223 | `children` |
+/// | 224–255 | `reserved`: 0 |
+///
+/// Children come first, in the order of their leaves; what is left over has the box from +∞ to −∞, which no ray meets,
+/// and [`Child::EMPTY`].
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Node {
+    pub low: [[f32; WIDTH]; 3],
+    pub high: [[f32; WIDTH]; 3],
+    pub children: [Child; WIDTH],
+    pub reserved: [u32; 8],
+}
+
+const _: () = assert!(size_of::<Node>() == 256 && align_of::<Node>() == 64);
+
+impl Node {
+    pub(crate) const EMPTY: Self = Self {
+        low: [[f32::INFINITY; WIDTH]; 3],
+        high: [[f32::NEG_INFINITY; WIDTH]; 3],
+        children: [Child::EMPTY; WIDTH],
+        reserved: [0; 8],
+    };
+
+    pub(super) fn set(&mut self, slot: usize, bounds: Bounds, child: Child) {
+        for axis in 0..3 {
+            self.low[axis][slot] = bounds.low[axis];
+            self.high[axis][slot] = bounds.high[axis];
+        }
+        self.children[slot] = child;
+    }
+
+    pub(crate) fn bounds(&self, slot: usize) -> Bounds {
+        let corner = |planes: &[[f32; WIDTH]; 3]| glam::Vec3::from(planes.map(|plane| plane[slot]));
+        Bounds { low: corner(&self.low), high: corner(&self.high) }
+    }
+}
+
+/// What a slot of a node leads to, in a word: the 2 high bits say what, 0 a node, 1 a leaf of spheres, 2 of triangles,
+/// 3 of polygons; the 30 low bits are its index.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Child(u32);
+
+/// A [`Child`] taken apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unpacked {
+    Empty,
+    /// Index into [`Tree::nodes`](super::Tree::nodes).
+    Inner(u32),
+    /// Index into [`Tree::leaves`](super::Tree::leaves).
+    Leaf(Kind, u32),
+}
+
+impl Child {
+    const INDEX_BITS: u32 = 30;
+    const INDEX: u32 = (1 << Self::INDEX_BITS) - 1;
+
+    /// Indices are less than this.
+    pub(crate) const LIMIT: u32 = Self::INDEX;
+
+    /// Nothing: the node of the index that none has.
+    pub(crate) const EMPTY: Self = Self(Self::INDEX);
+
+    pub(crate) fn inner(index: u32) -> Self {
+        debug_assert!(index < Self::LIMIT);
+        Self(index)
+    }
+
+    pub(crate) fn leaf(kind: Kind, index: u32) -> Self {
+        debug_assert!(index < Self::LIMIT);
+        Self((kind as u32 + 1) << Self::INDEX_BITS | index)
+    }
+
+    pub(crate) fn unpack(self) -> Unpacked {
+        let index = self.0 & Self::INDEX;
+        match self.0 >> Self::INDEX_BITS {
+            0 if self == Self::EMPTY => Unpacked::Empty,
+            0 => Unpacked::Inner(index),
+            1 => Unpacked::Leaf(Kind::Sphere, index),
+            2 => Unpacked::Leaf(Kind::Triangle, index),
+            _ => Unpacked::Leaf(Kind::Polygon, index),
+        }
+    }
+}
+
+/// Primitives of one kind that are tested together: a run of [`Tree::order`](super::Tree::order).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Leaf {
+    pub kind: Kind,
+    pub first: u32,
+    pub count: u32,
+    /// Sum of the weights of its items.
+    pub weight: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn children_unpack_to_what_they_were_made_of() {
+        for index in [0, 1, Child::LIMIT - 1] {
+            assert_eq!(Child::inner(index).unpack(), Unpacked::Inner(index));
+            for kind in [Kind::Sphere, Kind::Triangle, Kind::Polygon] {
+                assert_eq!(Child::leaf(kind, index).unpack(), Unpacked::Leaf(kind, index));
+            }
+        }
+        assert_eq!(Child::EMPTY.unpack(), Unpacked::Empty);
+    }
+
+    #[test]
+    fn fields_lie_where_the_table_says() {
+        use std::mem::offset_of;
+        let offsets = [
+            offset_of!(Node, low),
+            offset_of!(Node, high),
+            offset_of!(Node, children),
+            offset_of!(Node, reserved),
+        ];
+        assert_eq!(offsets, [0, 96, 192, 224]);
+    }
+}
