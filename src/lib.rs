@@ -38,7 +38,7 @@ pub mod lanes;
 pub mod load;
 mod math;
 pub mod measure;
-pub mod prepare;
+mod prepare;
 pub mod rays;
 pub mod reference;
 pub mod render;

@@ -1,10 +1,9 @@
 //! The binary tree: parted top down, weighed bottom up.
 
-use super::collapse::{self, Choices, LeastCosts};
+use super::choice::{Choices, LeastCosts, weigh};
 use super::group::Spread;
 use super::split::{halve, part};
 use super::{Bounds, Costs, DEPTH_LIMIT, Item, Kind, word};
-use glam::Vec3A;
 use rayon::prelude::*;
 
 /// Above so many items the two halves are built in parallel.
@@ -20,12 +19,6 @@ pub(super) struct Reference {
 }
 
 const _: () = assert!(size_of::<Reference>() == 32);
-
-impl Reference {
-    pub(super) fn middle(&self) -> Vec3A {
-        0.5 * Vec3A::from(self.bounds.low) + 0.5 * Vec3A::from(self.bounds.high)
-    }
-}
 
 /// A place where a group of items parts in two. A group of n items parts in at most n − 1 places, itself and those within
 /// its halves, so the places of every group are known before it is built: its own first, then those of the left half, then
@@ -65,12 +58,12 @@ pub(super) fn build(items: &[Item], costs: &Costs) -> BinaryTree {
 /// Parts a group that is not empty down to single items, and returns what it costs.
 fn grow(references: &mut [Reference], forks: &mut [Fork], depth: u32, costs: &Costs) -> LeastCosts {
     let spread = Spread::of(references);
-    let area = spread.group.bounds().half_area();
+    let bounds = spread.group.bounds();
+    // More than 0, so that nodes and leaves count where boxes have no area.
+    let area = bounds.half_area().max(f64::MIN_POSITIVE);
     let fits = references.len() <= costs.largest_leaf.max(1) as usize && spread.group.is_of_one_kind();
-    let as_leaf = fits.then(|| area * f64::from(costs.of_weights(spread.group.weights)));
-    let Some((fork, forks)) = forks.split_first_mut() else {
-        return LeastCosts::of_leaf(as_leaf.unwrap_or(f64::INFINITY));
-    };
+    let as_leaf = if fits { area * f64::from(costs.of_weights(spread.group.weights)) } else { f64::INFINITY };
+    let Some((fork, forks)) = forks.split_first_mut() else { return LeastCosts::of_leaf(as_leaf) };
     let deep = is_deep(depth, references.len());
     let middle = if deep { halve(references, &spread) } else { part(references, &spread, costs) };
     let parallel = references.len() >= PARALLEL;
@@ -81,9 +74,9 @@ fn grow(references: &mut [Reference], forks: &mut [Fork], depth: u32, costs: &Co
     let (left_costs, right_costs) =
         if parallel { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
     let as_node = area * f64::from(costs.node);
-    let (least, choices) = collapse::weigh(&left_costs, &right_costs, as_leaf, as_node);
-    *fork = Fork { bounds: spread.group.bounds(), left: word(middle), choices };
-    least
+    let (least_costs, choices) = weigh(&left_costs, &right_costs, as_leaf, as_node);
+    *fork = Fork { bounds, left: word(middle), choices };
+    least_costs
 }
 
 /// Whether the forks below `depth` others must halve from here on to stay within the limit: a cut may leave all items but

@@ -1,91 +1,7 @@
-//! From the binary tree to nodes of eight children for the least cost: Ylitie, Karras and Laine, "Efficient Incoherent Ray
-//! Traversal on GPUs Through Compressed Wide BVHs", 2017, section 3.2.
-//!
-//! A group becomes one child of a node: a leaf if it may, or a node; or it spreads over several children, so many for its
-//! left half and so many for its right. The cheapest way follows from those of its halves:
-//!
-//! - node: C₁ = area · node cost + D₈
-//! - leaf: C₁ = area · leaf cost
-//! - i children: Dᵢ = min over 0 < k < i of C_k(left) + C_(i−k)(right)
-//! - up to i children: Cᵢ = min(Dᵢ, Cᵢ₋₁)
+//! From the binary tree to nodes of eight children, as its [`choices`](super::choice) say.
 
 use super::binary::{BinaryTree, Fork};
 use super::{Bounds, Child, Leaf, Node, Tree, WIDTH, word};
-
-/// What a group costs as up to 1, 2, … 7 children of a node.
-pub(super) struct LeastCosts([f64; WIDTH - 1]);
-
-impl LeastCosts {
-    /// A group that does not part.
-    pub(super) fn of_leaf(cost: f64) -> Self {
-        Self([cost; WIDTH - 1])
-    }
-}
-
-/// The cheapest ways for a group, in 4 bits each.
-#[derive(Clone, Copy)]
-pub(super) struct Choices(u32);
-
-impl Choices {
-    pub(super) const NONE: Self = Self(0);
-
-    /// Of 2 to 8 children, how many go to the left half; 0 if one child fewer is as cheap.
-    fn left_of(self, children: usize) -> usize {
-        (self.0 >> (4 * (children - 2)) & 15) as usize
-    }
-
-    fn set_left_of(&mut self, children: usize, left: u32) {
-        self.0 |= left << (4 * (children - 2));
-    }
-
-    fn set_leaf(&mut self) {
-        self.0 |= 1 << 28;
-    }
-
-    /// Whether one child is a leaf and not a node.
-    fn is_leaf(self) -> bool {
-        self.0 >> 28 != 0
-    }
-}
-
-/// The cheapest ways for a group, from those of its halves, what it costs as a leaf if it may be one, and what visiting it
-/// costs as a node.
-pub(super) fn weigh(
-    LeastCosts(left): &LeastCosts,
-    LeastCosts(right): &LeastCosts,
-    as_leaf: Option<f64>,
-    as_node: f64,
-) -> (LeastCosts, Choices) {
-    let mut choices = Choices::NONE;
-    let mut spread_costs = [(f64::INFINITY, 0); WIDTH + 1];
-    for (children, cheapest) in spread_costs.iter_mut().enumerate().skip(2) {
-        for (to_left, k) in (1..children).zip(1..) {
-            let cost = left[to_left - 1] + right[children - to_left - 1];
-            if cost < cheapest.0 {
-                *cheapest = (cost, k);
-            }
-        }
-    }
-    let (all, to_left) = spread_costs[WIDTH];
-    choices.set_left_of(WIDTH, to_left);
-    let mut cost = as_node + all;
-    if let Some(as_leaf) = as_leaf
-        && as_leaf <= cost
-    {
-        choices.set_leaf();
-        cost = as_leaf;
-    }
-    let mut costs = LeastCosts::of_leaf(cost);
-    for children in 2..WIDTH {
-        let (spread_cost, to_left) = spread_costs[children];
-        if spread_cost < cost {
-            choices.set_left_of(children, to_left);
-            cost = spread_cost;
-        }
-        costs.0[children - 1] = cost;
-    }
-    (costs, choices)
-}
 
 /// A run of references and the first of its forks.
 #[derive(Clone, Copy)]
@@ -102,16 +18,15 @@ struct Children {
     count: usize,
 }
 
-pub(super) fn collapse(binary: BinaryTree) -> Tree {
-    let count = binary.references.len();
-    let tree = Tree { nodes: Vec::new(), leaves: Vec::new(), order: Vec::new(), root: Child::EMPTY, depth: 0 };
-    let mut writer = Writer { binary: &binary, tree };
-    if count > 0 {
-        writer.tree.root = writer.write_node(Run { first: 0, count, fork: 0 }, 1);
+pub(super) fn collapse(binary: &BinaryTree) -> Tree {
+    let order: Vec<u32> = binary.references.iter().map(|reference| reference.index).collect();
+    let all = Run { first: 0, count: order.len(), fork: 0 };
+    let tree = Tree { nodes: Vec::new(), leaves: Vec::new(), order, root: Child::EMPTY, depth: 0 };
+    let mut writer = Writer { binary, tree };
+    if all.count > 0 {
+        writer.tree.root = writer.write_node(all, 1);
     }
-    let mut tree = writer.tree;
-    tree.order = binary.references.iter().map(|reference| reference.index).collect();
-    tree
+    writer.tree
 }
 
 struct Writer<'a> {
@@ -148,26 +63,21 @@ impl Writer<'_> {
         Child::leaf(kind, index)
     }
 
-    /// Spreads a run over up to so many children.
-    fn spread(&self, run: Run, mut limit: usize, children: &mut Children) {
-        let mut left = 0;
-        if let Some(fork) = self.fork(run) {
-            while limit > 1 && left == 0 {
-                left = fork.choices.left_of(limit);
-                limit -= usize::from(left == 0);
-            }
-            if left > 0 {
-                let middle = fork.left as usize;
-                let left_run = Run { first: run.first, count: middle, fork: run.fork + 1 };
-                let right_run =
-                    Run { first: run.first + middle, count: run.count - middle, fork: run.fork + middle };
-                self.spread(left_run, left, children);
-                self.spread(right_run, limit - left, children);
-                return;
-            }
-        }
-        children.runs[children.count] = Some(run);
-        children.count += 1;
+    /// Spreads a run over up to `limit` children.
+    fn spread(&self, run: Run, limit: usize, children: &mut Children) {
+        let split = self.fork(run).and_then(|fork| {
+            let ways = (2..=limit).rev().map(|count| (count, fork.choices.left_of(count)));
+            ways.into_iter().find(|&(_, left)| left > 0).map(|way| (way, fork.left as usize))
+        });
+        let Some(((count, left), middle)) = split else {
+            children.runs[children.count] = Some(run);
+            children.count += 1;
+            return;
+        };
+        let left_run = Run { first: run.first, count: middle, fork: run.fork + 1 };
+        let right_run = Run { first: run.first + middle, count: run.count - middle, fork: run.fork + middle };
+        self.spread(left_run, left, children);
+        self.spread(right_run, count - left, children);
     }
 
     /// `None` for a single item.

@@ -18,13 +18,20 @@ pub(super) struct Group {
 }
 
 impl Group {
-    pub(super) const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, weights: Vec3A::ZERO };
+    pub(super) const EMPTY: Self =
+        Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, weights: Vec3A::ZERO };
 
-    pub(super) fn add(&mut self, reference: &Reference) {
+    pub(super) fn of(reference: &Reference) -> Self {
         const LANES: [Vec3A; Kind::COUNT] = [Vec3A::X, Vec3A::Y, Vec3A::Z];
-        self.low = self.low.min(reference.bounds.low.into());
-        self.high = self.high.max(reference.bounds.high.into());
-        self.weights += LANES[reference.kind as usize] * f32::from(reference.weight);
+        Self {
+            low: reference.bounds.low.into(),
+            high: reference.bounds.high.into(),
+            weights: LANES[reference.kind as usize] * f32::from(reference.weight),
+        }
+    }
+
+    pub(super) fn middle(&self) -> Vec3A {
+        0.5 * self.low + 0.5 * self.high
     }
 
     pub(super) fn union(self, other: Self) -> Self {
@@ -52,6 +59,7 @@ impl Group {
 }
 
 /// A group and the box of the middles of its items.
+#[derive(Clone)]
 pub(super) struct Spread {
     pub(super) group: Group,
     pub(super) low: Vec3A,
@@ -62,35 +70,44 @@ impl Spread {
     const EMPTY: Self = Self { group: Group::EMPTY, low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
 
     pub(super) fn of(references: &[Reference]) -> Self {
-        let of_chunk = |chunk: &[Reference]| {
-            let mut spread = Self::EMPTY;
-            for reference in chunk {
-                let middle = reference.middle();
-                spread.group.add(reference);
+        let add = |spread: &mut Self, references: &[Reference]| {
+            for reference in references {
+                let group = Group::of(reference);
+                let middle = group.middle();
+                spread.group = spread.group.union(group);
                 spread.low = spread.low.min(middle);
                 spread.high = spread.high.max(middle);
             }
-            spread
         };
-        in_chunks(references, of_chunk, |one, other| Self {
-            group: one.group.union(other.group),
-            low: one.low.min(other.low),
-            high: one.high.max(other.high),
-        })
+        let join = |one: &mut Self, other: &Self| {
+            one.group = one.group.union(other.group);
+            one.low = one.low.min(other.low);
+            one.high = one.high.max(other.high);
+        };
+        in_chunks(references, &Self::EMPTY, add, join)
     }
 }
 
 /// Goes through many items in parallel and joins the results in the order of the items.
-pub(super) fn in_chunks<T: Send>(
+#[inline]
+pub(super) fn in_chunks<T: Clone + Send + Sync>(
     references: &[Reference],
-    of_chunk: impl Fn(&[Reference]) -> T + Sync,
-    join: impl Fn(T, T) -> T,
+    empty: &T,
+    add: impl Fn(&mut T, &[Reference]) + Sync,
+    join: impl Fn(&mut T, &T),
 ) -> T {
-    let (first, rest) = references.split_at(references.len().min(CHUNK));
-    if rest.is_empty() {
-        return of_chunk(first);
+    let mut all = empty.clone();
+    if references.len() <= CHUNK {
+        add(&mut all, references);
+        return all;
     }
-    let (first, rest): (T, Vec<T>) =
-        rayon::join(|| of_chunk(first), || rest.par_chunks(CHUNK).map(&of_chunk).collect());
-    rest.into_iter().fold(first, join)
+    let chunks = references.par_chunks(CHUNK).map(|chunk| {
+        let mut part = empty.clone();
+        add(&mut part, chunk);
+        part
+    });
+    for part in chunks.collect::<Vec<T>>() {
+        join(&mut all, &part);
+    }
+    all
 }

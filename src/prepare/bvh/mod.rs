@@ -1,13 +1,14 @@
 //! A bounding volume hierarchy of eight children a node, built for the least expected cost of a ray.
 //!
-//! [`binary`] parts the primitives top down into a binary tree by the binned surface area heuristic ([`split`]), and
-//! decides bottom up which of its nodes to keep ([`collapse`]), so that the tree of wide nodes costs least.
+//! [`binary`] parts the primitives top down by the binned surface area heuristic ([`split`]) and decides bottom up which
+//! parts become nodes and which leaves ([`choice`]); [`collapse`] writes these out.
 //!
 //! The tree is the same to the bit for any number of threads: what runs in parallel works on parts that depend on the
 //! primitives alone, and their results are put together in order.
 
 mod binary;
 mod bounds;
+mod choice;
 mod collapse;
 mod cost;
 mod group;
@@ -17,7 +18,9 @@ mod split;
 mod tests;
 
 pub(crate) use bounds::Bounds;
-pub(crate) use cost::{Costs, sah_cost};
+pub(crate) use cost::Costs;
+#[cfg_attr(not(test), expect(unused_imports, reason = "the report on a scene follows"))]
+pub(crate) use cost::sah_cost;
 pub(crate) use node::{Child, Leaf, Node, Unpacked, WIDTH};
 
 /// Which test a primitive takes.
@@ -66,7 +69,7 @@ pub(crate) struct Tree {
 /// For more than [`Child::LIMIT`] items.
 pub(crate) fn build(items: &[Item], costs: &Costs) -> Tree {
     assert!(items.len() <= Child::LIMIT as usize, "{} items are more than a tree can number", items.len());
-    collapse::collapse(binary::build(items, costs))
+    collapse::collapse(&binary::build(items, costs))
 }
 
 /// An index or count of items; there are fewer than 2³⁰ of them.
