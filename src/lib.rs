@@ -38,7 +38,7 @@ pub mod lanes;
 pub mod load;
 mod math;
 pub mod measure;
-mod prepare;
+pub mod prepare;
 pub mod rays;
 pub mod reference;
 pub mod render;
