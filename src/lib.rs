@@ -19,7 +19,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let scene = load::load("scenes/glass.toml".as_ref())?.scene;
 //! let options = render::RenderOptions {
-//!     engine: render::Engine::Wavefront { width: lanes::Width::BEST, batch: render::DEFAULT_BATCH },
+//!     engine: render::Engine::wavefront(lanes::Width::BEST),
 //!     region: film::Region::whole(scene.image.width, scene.image.height),
 //!     threads: 0,
 //!     on_progress: &|_| {},

@@ -7,14 +7,15 @@ use crate::prepare::{PrepareError, Prepared};
 use crate::rays::RayCounts;
 use crate::reference::Tracer;
 use crate::scene::Scene;
-use crate::wavefront::{Statistics, TileGrid, Worker};
+use crate::traverse::RUN;
+use crate::wavefront::{Statistics, TileGrid, TilePixels, Worker};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use thiserror::Error;
 
-pub use crate::wavefront::DEFAULT_BATCH;
+pub use crate::wavefront::{DEFAULT_BATCH, PixelRecord};
 
 /// What traces the rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +28,17 @@ pub enum Engine {
         width: Width,
         /// Rays of a batch, rounded up to a multiple of 64; they do not change the picture either.
         batch: usize,
+        /// Whether to keep a record of what the rays of each pixel hit.
+        records: bool,
     },
+}
+
+impl Engine {
+    /// The wavefront engine as it is meant to be used.
+    #[must_use]
+    pub fn wavefront(width: Width) -> Self {
+        Self::Wavefront { width, batch: DEFAULT_BATCH, records: false }
+    }
 }
 
 /// How to render, as opposed to what.
@@ -56,6 +67,8 @@ pub struct Rendered {
     pub prepare_seconds: f64,
     /// Wall-clock time to trace all rays.
     pub trace_seconds: f64,
+    /// What the rays of each pixel hit; empty unless asked for.
+    pub records: Vec<PixelRecord>,
     /// What the stages of the wavefront engine did; none for the reference.
     pub wavefront: Option<WavefrontReport>,
 }
@@ -100,9 +113,9 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     match options.engine {
         Engine::Reference => with_reference(scene, options, &pool, image),
-        Engine::Wavefront { width, batch } => {
-            let batch = batch.max(1).next_multiple_of(64);
-            with_wavefront(scene, options, &pool, image, width, batch)
+        Engine::Wavefront { width, batch, records } => {
+            let batch = batch.max(1).next_multiple_of(RUN);
+            with_wavefront(scene, options, &pool, image, (width, batch, records))
         }
     }
 }
@@ -121,7 +134,7 @@ fn with_reference(
     let rays = pool.install(|| trace_pixels(&tracer, options, &mut image)).ok_or(RenderError::Stopped)?;
     let trace_seconds = start.elapsed().as_secs_f64();
     let threads = pool.current_num_threads();
-    Ok(Rendered { image, rays, threads, prepare_seconds, trace_seconds, wavefront: None })
+    Ok(Rendered { image, rays, threads, prepare_seconds, trace_seconds, records: Vec::new(), wavefront: None })
 }
 
 /// Fills the image in short runs of pixels, so that the last thread to finish is not long alone; none if told to stop.
@@ -155,22 +168,23 @@ fn with_wavefront(
     options: &RenderOptions<'_>,
     pool: &rayon::ThreadPool,
     image: Image,
-    width: Width,
-    batch: usize,
+    (width, batch, wants_records): (Width, usize, bool),
 ) -> Result<Rendered, RenderError> {
     let start = Instant::now();
     let prepared = pool.install(|| Prepared::new(scene))?;
     let prepare_seconds = start.elapsed().as_secs_f64();
 
     let start = Instant::now();
+    let records = vec![PixelRecord::NONE; if wants_records { image.pixels.len() } else { 0 }];
     let tiles = TiledRender {
         prepared: &prepared,
         grid: TileGrid::new(options.region, &prepared, batch),
         batch,
+        wants_records,
         options,
         next: AtomicU64::new(0),
         pixels_done: AtomicU64::new(0),
-        image: Mutex::new(image),
+        result: Mutex::new((image, records)),
     };
     // One worker a thread, each with queues of its own.
     let workers = pool.broadcast(|_| width.run(RunWorker(&tiles)));
@@ -185,8 +199,10 @@ fn with_wavefront(
         queue_bytes = queue_bytes.max(*bytes);
     }
     let report = WavefrontReport::new(&statistics, &prepared, queue_bytes);
+    let (image, records) = tiles.result.into_inner().unwrap_or_else(PoisonError::into_inner);
     Ok(Rendered {
-        image: tiles.image.into_inner().unwrap_or_else(PoisonError::into_inner),
+        image,
+        records,
         rays: statistics.rays,
         threads: pool.current_num_threads(),
         prepare_seconds,
@@ -200,11 +216,28 @@ struct TiledRender<'a> {
     prepared: &'a Prepared<'a>,
     grid: TileGrid,
     batch: usize,
+    wants_records: bool,
     options: &'a RenderOptions<'a>,
     /// The tile to be taken next.
     next: AtomicU64,
     pixels_done: AtomicU64,
-    image: Mutex<Image>,
+    result: Mutex<(Image, Vec<PixelRecord>)>,
+}
+
+impl TiledRender<'_> {
+    fn paste(&self, pixels: &TilePixels, tile: Region) {
+        let region = self.options.region;
+        let (image, records) = &mut *self.result.lock().unwrap_or_else(PoisonError::into_inner);
+        let width = tile.width() as usize;
+        for (row, y) in (tile.y0..tile.y1).enumerate() {
+            let at = image.index(tile.x0 - region.x0, y - region.y0);
+            let run = row * width..(row + 1) * width;
+            image.pixels[at..at + width].copy_from_slice(&pixels.colours[run.clone()]);
+            if self.wants_records {
+                records[at..at + width].copy_from_slice(&pixels.records[run]);
+            }
+        }
+    }
 }
 
 /// One worker, for lanes of any width: what it has done, and the bytes of its queues.
@@ -215,16 +248,16 @@ impl lanes::Job for RunWorker<'_> {
 
     fn run<F: Single>(self) -> Self::Output {
         let RunWorker(render) = self;
-        let mut worker = Worker::new(render.prepared, render.batch, render.options.stop);
+        let mut worker = Worker::new(render.prepared, render.batch, render.wants_records, render.options.stop);
         loop {
             let index = render.next.fetch_add(1, Ordering::Relaxed);
             if index >= render.grid.count() || render.options.stop.load(Ordering::Relaxed) {
                 break;
             }
             let pixels = worker.tile::<F>(&render.grid, index);
-            let tile = render.grid.tile(index);
-            render.image.lock().unwrap_or_else(PoisonError::into_inner).paste(&pixels, &tile, &render.options.region);
-            let done = render.pixels_done.fetch_add(tile.pixels(), Ordering::Relaxed) + tile.pixels();
+            render.paste(&pixels, render.grid.tile(index));
+            let pixels = render.grid.tile(index).pixels();
+            let done = render.pixels_done.fetch_add(pixels, Ordering::Relaxed) + pixels;
             (render.options.on_progress)(done);
         }
         let bytes = worker.bytes();

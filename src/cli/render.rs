@@ -161,7 +161,7 @@ fn engine(arguments: &Arguments) -> render::Engine {
         (Engine::Simd, Some("16")) => Width::Sixteen,
         (Engine::Simd, _) => Width::BEST,
     };
-    render::Engine::Wavefront { width, batch: render::DEFAULT_BATCH }
+    render::Engine::wavefront(width)
 }
 
 /// The command line's settings take the place of the scene's.

@@ -71,15 +71,6 @@ impl Image {
         Ok(Self { width: region.width(), height: region.height(), pixels })
     }
 
-    /// Takes in the pixels of a tile, of a picture that is as large as a region that holds the tile.
-    pub(crate) fn paste(&mut self, pixels: &[[f32; 3]], tile: &Region, region: &Region) {
-        let width = tile.width() as usize;
-        for (y, row) in (tile.y0 - region.y0..).zip(pixels.chunks(width)) {
-            let first = self.index(tile.x0 - region.x0, y);
-            self.pixels[first..first + width].copy_from_slice(row);
-        }
-    }
-
     /// Where a pixel is kept.
     #[must_use]
     pub fn index(&self, x: u32, y: u32) -> usize {

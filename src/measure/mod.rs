@@ -1,9 +1,11 @@
 //! What is said of a result: how far two pictures lie apart, and what a run did and how long it took.
 
+mod agreement;
 mod difference;
 mod report;
 mod wavefront;
 
+pub use agreement::{Agreement, Distance};
 pub use difference::{Difference, heat_map};
 pub use report::{Isa, RenderReport, Seconds};
 pub use wavefront::{Counters, LanesReport, MemoryReport, StageReport, WavefrontReport};

@@ -1,7 +1,7 @@
 //! The queues of one depth.
 
 use super::queue::{
-    AttenuationQueue, ChildQueue, DepartureQueue, PendingQueue, RadianceQueue, RayQueue,
+    AttenuationQueue, ChildQueue, DepartureQueue, NodeQueue, PendingQueue, RadianceQueue, RayQueue, TrailQueue,
 };
 use crate::prepare::Plan;
 
@@ -19,11 +19,15 @@ pub(super) struct Level {
     pub(super) attenuations: AttenuationQueue,
     pub(super) reflected: ChildQueue,
     pub(super) refracted: ChildQueue,
+    /// Row by row of the rays; empty unless a record is asked for.
+    pub(super) nodes: NodeQueue,
+    /// Row by row of the batch's surfaces; likewise.
+    pub(super) trails: TrailQueue,
 }
 
 impl Level {
     /// Room for the children of a batch, or for a batch of primary rays at depth 0.
-    pub(super) fn new(plan: &Plan, depth: u32, batch: usize) -> Self {
+    pub(super) fn new(plan: &Plan, depth: u32, batch: usize, records: bool) -> Self {
         let rays = if depth == 0 { batch } else { batch * (usize::from(plan.reflection) + usize::from(plan.refraction)) };
         let if_needed = |is_needed: bool, rows: usize| if is_needed { rows } else { 0 };
         let has_children = depth < plan.max_depth;
@@ -36,6 +40,8 @@ impl Level {
             attenuations: AttenuationQueue::with_capacity(if_needed(plan.absorption, batch)),
             reflected: ChildQueue::with_capacity(if_needed(plan.reflection && has_children, batch)),
             refracted: ChildQueue::with_capacity(if_needed(plan.refraction && has_children, batch)),
+            nodes: NodeQueue::with_capacity(if_needed(records, rays)),
+            trails: TrailQueue::with_capacity(if_needed(records && has_surfaces, batch)),
         }
     }
 
@@ -53,5 +59,7 @@ impl Level {
             + self.attenuations.bytes()
             + self.reflected.bytes()
             + self.refracted.bytes()
+            + self.nodes.bytes()
+            + self.trails.bytes()
     }
 }

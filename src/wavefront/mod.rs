@@ -30,9 +30,11 @@ mod spawn;
 mod statistics;
 mod surface;
 mod tiles;
+mod trail;
 mod worker;
 
 pub use queue::ColumnPlan;
+pub use trail::PixelRecord;
 pub(crate) use statistics::{Stage, Statistics};
 pub use worker::DEFAULT_BATCH;
-pub(crate) use worker::{TileGrid, Worker};
+pub(crate) use worker::{TileGrid, TilePixels, Worker};

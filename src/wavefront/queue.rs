@@ -217,6 +217,26 @@ queue! {
     }
 }
 
+queue! {
+    /// What rays hit; kept where a record of the picture is asked for. Row by row of the rays.
+    NodeQueue of NodeRecord {
+        /// signature of the ray's tree
+        node: u64,
+        /// primitive; 2³² − 1 on a miss
+        id: u32,
+    }
+}
+
+queue! {
+    /// What pending surfaces are and see; kept where a record of the picture is asked for. Row by row of these.
+    TrailQueue of TrailRecord {
+        /// signature of the lights so far
+        lights: u64,
+        /// primitive
+        id: u32,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

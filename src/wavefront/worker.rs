@@ -10,6 +10,7 @@ use super::spawn::{Spawning, spawn};
 use super::statistics::{Stage, Statistics};
 use super::surface::{Batch, Sorted, surface};
 use super::tiles::{Sample, Tiles};
+use super::trail::{self, PixelRecord};
 use crate::film::{Region, SamplePattern};
 use crate::lanes::{Double, Single};
 use crate::prepare::Prepared;
@@ -43,12 +44,20 @@ pub(crate) struct Worker<'a> {
     prepared: &'a Prepared<'a>,
     pattern: SamplePattern,
     batch: usize,
+    records: bool,
     samples: Vec<Sample>,
     /// By depth; made when a ray first gets so deep.
     levels: Vec<Level>,
     scratch: Scratch,
     stop: &'a AtomicBool,
     pub(crate) statistics: Statistics,
+}
+
+/// A tile, row by row.
+pub(crate) struct TilePixels {
+    pub(crate) colours: Vec<[f32; 3]>,
+    /// Empty unless asked for.
+    pub(crate) records: Vec<PixelRecord>,
 }
 
 /// Queues of the batch at hand, for whatever depth it is of.
@@ -87,39 +96,43 @@ impl Scratch {
 }
 
 impl<'a> Worker<'a> {
-    pub(crate) fn new(prepared: &'a Prepared<'a>, batch: usize, stop: &'a AtomicBool) -> Self {
+    /// `batch` is a multiple of [`traverse::RUN`].
+    pub(crate) fn new(prepared: &'a Prepared<'a>, batch: usize, records: bool, stop: &'a AtomicBool) -> Self {
         Self {
             prepared,
             pattern: SamplePattern::new(&prepared.scene.render),
             batch,
+            records,
             samples: Vec::with_capacity(batch),
-            levels: vec![Level::new(&prepared.plan, 0, batch)],
+            levels: vec![Level::new(&prepared.plan, 0, batch, records)],
             scratch: Scratch::new(prepared, batch),
             stop,
             statistics: Statistics::default(),
         }
     }
 
-    /// Renders a tile of the grid: its pixels, row by row. Means nothing once the worker was told to stop.
-    pub(crate) fn tile<F: Single>(&mut self, grid: &TileGrid, index: u64) -> Vec<[f32; 3]> {
+    /// Renders a tile of the grid. Means nothing once the worker was told to stop.
+    pub(crate) fn tile<F: Single>(&mut self, grid: &TileGrid, index: u64) -> TilePixels {
         let tile = grid.tile(index);
         let samples_per_pixel = self.prepared.plan.samples;
-        let mut sums = vec![[0.0; 3]; tile.width() as usize * tile.height() as usize];
+        let pixels = tile.width() as usize * tile.height() as usize;
+        let mut sums = vec![[0.0; 3]; pixels];
+        let mut records = vec![PixelRecord::NONE; if self.records { pixels } else { 0 }];
         let mut samples =
             grid.tiles.samples(tile, self.prepared.scene.image.height, samples_per_pixel).peekable();
         while samples.peek().is_some() && !self.stop.load(Ordering::Relaxed) {
             self.samples.clear();
             self.samples.extend(samples.by_ref().take(self.batch));
-            self.batch::<F>(&mut sums);
+            self.batch::<F>(&mut sums, &mut records);
         }
         let count = f64::from(samples_per_pixel);
         #[expect(clippy::cast_possible_truncation, reason = "the one rounding of a pixel to f32")]
         let mean = |sum: f64| (sum / count) as f32;
-        sums.into_iter().map(|sum| sum.map(mean)).collect()
+        TilePixels { colours: sums.into_iter().map(|sum| sum.map(mean)).collect(), records }
     }
 
     /// Traces the samples at hand.
-    fn batch<F: Single>(&mut self, sums: &mut [[f64; 3]]) {
+    fn batch<F: Single>(&mut self, sums: &mut [[f64; 3]], records: &mut [PixelRecord]) {
         let (prepared, statistics) = (self.prepared, &mut self.statistics);
         statistics.rays.primary += self.samples.len() as u64;
         if prepared.plan.random_numbers {
@@ -134,6 +147,9 @@ impl<'a> Worker<'a> {
         self.statistics.timed(0, Stage::Resolve, |_| {
             add_to_pixels(&self.samples, &self.levels[0].radiance, sums);
         });
+        if self.records {
+            trail::add_to_pixels(&self.samples, &self.levels[0].nodes, records);
+        }
     }
 
     /// Finds what all rays of a level see: a batch of them at a time, each with all its descendants.
@@ -145,7 +161,7 @@ impl<'a> Worker<'a> {
             }
             self.intersect::<F>(depth, first, (count - first).min(self.batch));
             self.surface::<F::Double>(depth, first);
-            self.illuminate::<F>(depth);
+            self.illuminate::<F>(depth, first);
             let has_children = self.spawn::<F::Double>(depth);
             if has_children {
                 self.trace::<F>(depth + 1);
@@ -198,17 +214,23 @@ impl<'a> Worker<'a> {
         }
     }
 
-    fn illuminate<F: Single>(&mut self, depth: usize) {
+    fn illuminate<F: Single>(&mut self, depth: usize, first: usize) {
         let prepared = self.prepared;
-        let (pending, scratch) = (&mut self.levels[depth].pending, &mut self.scratch);
+        let (level, scratch) = (&mut self.levels[depth], &mut self.scratch);
         let (surfaces, normals, shadows) = (&scratch.surfaces, &scratch.normals, &mut scratch.shadows);
         self.statistics.timed(depth, Stage::Illuminate, |_| {
-            illuminate::begin(prepared, surfaces, pending);
+            illuminate::begin(prepared, surfaces, &mut level.pending);
         });
-        if !prepared.plan.local_light {
-            return;
+        if self.records {
+            trail::begin(level, first, &scratch.hits, surfaces);
         }
         for light in &prepared.scene.lights {
+            if !prepared.plan.local_light {
+                if self.records {
+                    trail::add_light(level, shadows);
+                }
+                continue;
+            }
             let powers = self.statistics.timed(depth, Stage::Illuminate, |work| {
                 work.rows += surfaces.len() as u64;
                 illuminate::aim::<F::Double>(prepared, light, surfaces, normals, shadows, work)
@@ -231,7 +253,12 @@ impl<'a> Worker<'a> {
                 let mut ends = Ends { t: &mut shadows.t, id: &mut [] };
                 traverse::occluded::<F>(&prepared.hierarchy, &rays, &mut ends, &mut work.tests);
             });
-            self.statistics.timed(depth, Stage::Illuminate, |_| illuminate::add_light(shadows, pending));
+            self.statistics.timed(depth, Stage::Illuminate, |_| {
+                illuminate::add_light(shadows, &mut level.pending);
+            });
+            if self.records {
+                trail::add_light(level, shadows);
+            }
         }
     }
 
@@ -243,7 +270,7 @@ impl<'a> Worker<'a> {
         }
         if self.levels.len() == depth + 1 {
             #[expect(clippy::cast_possible_truncation, reason = "a depth is at most 64")]
-            self.levels.push(Level::new(plan, depth as u32 + 1, self.batch));
+            self.levels.push(Level::new(plan, depth as u32 + 1, self.batch, self.records));
         }
         let (upper, lower) = self.levels.split_at_mut(depth + 1);
         let (level, deeper) = (&mut upper[depth], &mut lower[0]);
@@ -267,11 +294,14 @@ impl<'a> Worker<'a> {
     fn resolve(&mut self, depth: usize, has_children: bool) {
         let (upper, lower) = self.levels.split_at_mut(depth + 1);
         let level = &mut upper[depth];
-        let deeper = lower.first().filter(|_| has_children).map(|deeper| &deeper.radiance);
+        let deeper = lower.first().filter(|_| has_children);
         self.statistics.timed(depth, Stage::Resolve, |work| {
             work.rows += level.pending.len() as u64;
-            resolve(level, deeper, self.prepared.plan.absorption);
+            resolve(level, deeper.map(|deeper| &deeper.radiance), self.prepared.plan.absorption);
         });
+        if self.records {
+            trail::resolve(level, deeper.map(|deeper| &deeper.nodes));
+        }
     }
 
     /// Memory of all queues.

@@ -6,6 +6,7 @@
     reason = "a test may end where it finds what it does not expect"
 )]
 
+mod agreement;
 mod bad_input;
 mod command_line;
 mod example_scenes;

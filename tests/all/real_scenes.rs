@@ -7,7 +7,7 @@ use wavelane::load::load;
 use wavelane::rays::RayCounts;
 
 /// A file of the folder; none, said out loud, where it is absent.
-fn file(name: &str) -> Option<PathBuf> {
+pub(crate) fn file(name: &str) -> Option<PathBuf> {
     let Some(folder) = std::env::var_os("WAVELANE_SCENES") else {
         skipped(&format!("{name}: WAVELANE_SCENES names no folder of scenes"));
         return None;
