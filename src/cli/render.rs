@@ -3,8 +3,9 @@
 use super::progress::{Progress, Style};
 use super::{Failure, interrupt, output};
 use crate::film::{self, BitDepth, Region};
+use crate::lanes::Isa;
 use crate::load;
-use crate::measure::{Isa, RenderReport, Seconds};
+use crate::measure::{RenderReport, Seconds};
 use crate::render::{RenderOptions, Rendered, render};
 use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
 use clap::ValueEnum;

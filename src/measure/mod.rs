@@ -4,4 +4,4 @@ mod difference;
 mod report;
 
 pub use difference::{Difference, heat_map};
-pub use report::{Isa, RenderReport, Seconds};
+pub use report::{RenderReport, Seconds};
