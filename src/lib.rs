@@ -10,6 +10,7 @@
 //! - [`scene`] is plain data in the user's units;
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that faster engines are checked against;
 //! - [`film`] holds sample positions, pixels and picture files;
+//! - [`lanes`] knows the instruction sets that the program is built for and runs on;
 //! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
 //!
 //! ```no_run

@@ -3,5 +3,9 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    // Before all else, while nothing has run that this machine may not have the instructions for.
+    if let Err(code) = wavelane::cli::check_machine() {
+        return code;
+    }
     wavelane::cli::run(std::env::args_os())
 }

@@ -134,7 +134,15 @@ fn with_reference(
     let rays = pool.install(|| trace_pixels(&tracer, options, &mut image)).ok_or(RenderError::Stopped)?;
     let trace_seconds = start.elapsed().as_secs_f64();
     let threads = pool.current_num_threads();
-    Ok(Rendered { image, rays, threads, prepare_seconds, trace_seconds, records: Vec::new(), wavefront: None })
+    Ok(Rendered {
+        image,
+        rays,
+        threads,
+        prepare_seconds,
+        trace_seconds,
+        records: Vec::new(),
+        wavefront: None,
+    })
 }
 
 /// Fills the image in short runs of pixels, so that the last thread to finish is not long alone; none if told to stop.
@@ -248,7 +256,8 @@ impl lanes::Job for RunWorker<'_> {
 
     fn run<F: Single>(self) -> Self::Output {
         let RunWorker(render) = self;
-        let mut worker = Worker::new(render.prepared, render.batch, render.wants_records, render.options.stop);
+        let mut worker =
+            Worker::new(render.prepared, render.batch, render.wants_records, render.options.stop);
         loop {
             let index = render.next.fetch_add(1, Ordering::Relaxed);
             if index >= render.grid.count() || render.options.stop.load(Ordering::Relaxed) {

@@ -8,6 +8,8 @@ mod output;
 mod progress;
 mod render;
 
+use crate::lanes;
+use crate::lanes::Isa;
 use clap::{Parser, Subcommand};
 use failure::Failure;
 use std::ffi::OsString;
@@ -15,7 +17,7 @@ use std::process::ExitCode;
 
 /// A Whitted ray tracer that reports its speed beside its error.
 #[derive(Debug, Parser)]
-#[command(name = "wavelane", version, max_term_width = 100)]
+#[command(name = "wavelane", version, long_version = long_version(), max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -31,10 +33,28 @@ enum Command {
     Diff(diff::Arguments),
 }
 
+fn long_version() -> String {
+    format!("{}\nbuilt for {}", env!("CARGO_PKG_VERSION"), Isa::BUILT_FOR)
+}
+
+/// Ends the program with exit code 1 and the reason on stderr where this machine has not all of the instructions that the
+/// program was built for.
+///
+/// # Errors
+///
+/// The exit code.
+pub fn check_machine() -> Result<(), ExitCode> {
+    lanes::check_machine().map_err(|refusal| {
+        output::diagnostic(&refusal);
+        ExitCode::FAILURE
+    })
+}
+
 /// Runs the program with its arguments, the program's name first.
 ///
 /// The exit code is 0 when the work is done; 1 when it failed; 2 for usage; 3 for an input that cannot be opened, parsed or
 /// accepted; 4 for a comparison over its limit; 130 when interrupted.
+#[inline(never)]
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,

@@ -3,9 +3,10 @@
 use super::progress::{Progress, Style};
 use super::{Failure, interrupt, output};
 use crate::film::{self, BitDepth, Region};
-use crate::load;
-use crate::measure::{Isa, RenderReport, Seconds};
+use crate::lanes::Isa;
 use crate::lanes::Width;
+use crate::load;
+use crate::measure::{RenderReport, Seconds};
 use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
 use clap::ValueEnum;
@@ -110,6 +111,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     film::check_writable(&arguments.output)?;
     output::check_json(arguments.json.as_deref(), &[&arguments.output])?;
 
+    if let Some(warning) = unused_instructions(arguments.engine, arguments.progress, Isa::of_this_machine()) {
+        output::diagnostic(&warning);
+    }
+
     let whole = Region::whole(scene.image.width, scene.image.height);
     let region = arguments.crop.unwrap_or(whole);
     let progress = Progress::new(arguments.progress, region.pixels());
@@ -164,6 +169,21 @@ fn engine(arguments: &Arguments) -> render::Engine {
     render::Engine::wavefront(width)
 }
 
+/// A warning that another build would be faster on this machine.
+///
+/// Only the simd engine gains by it (docs/design.md). It goes to the log of a batch job as to a terminal, since it is in
+/// batches that the time is lost; with `--progress json` a program reads stderr, and `--progress none` is how to ask for
+/// silence where one build serves many machines on purpose.
+fn unused_instructions(engine: Engine, progress: Style, machine: Isa) -> Option<String> {
+    let is_told = engine == Engine::Simd && matches!(progress, Style::Auto) && machine != Isa::BUILT_FOR;
+    is_told.then(|| {
+        format!(
+            "warning: built for {}, and this machine has {machine}: build on it (cargo build --release) for more speed",
+            Isa::BUILT_FOR
+        )
+    })
+}
+
 /// The command line's settings take the place of the scene's.
 fn apply(arguments: &Arguments, scene: &mut Scene) {
     let (image, render) = (&mut scene.image, &mut scene.render);
@@ -203,5 +223,30 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         rays: rendered.rays,
         seconds,
         wavefront: rendered.wavefront.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_who_can_gain_speed_is_told_so() {
+        // Any but the one that the build is for.
+        let other = if Isa::BUILT_FOR == Isa::Avx512 { Isa::Avx2 } else { Isa::Avx512 };
+        let said = unused_instructions(Engine::Simd, Style::Auto, other).unwrap();
+        assert!(
+            said.contains(&format!("built for {}, and this machine has {other}", Isa::BUILT_FOR)),
+            "{said}"
+        );
+        for (engine, progress, machine) in [
+            (Engine::Simd, Style::Auto, Isa::BUILT_FOR),
+            (Engine::Simd, Style::Json, other),
+            (Engine::Simd, Style::None, other),
+            (Engine::Scalar, Style::Auto, other),
+            (Engine::Reference, Style::Auto, other),
+        ] {
+            assert_eq!(unused_instructions(engine, progress, machine), None);
+        }
     }
 }

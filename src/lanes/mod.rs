@@ -5,11 +5,15 @@
 //! others: + − × ÷ √, comparisons, selection and bits. There is no fused multiply-add, no estimate of a reciprocal and no
 //! sum across lanes.
 
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod cpu;
+mod isa;
 mod scalar;
 mod vector;
-mod widths;
 mod wide_types;
+mod widths;
 
+pub use isa::Isa;
 pub(crate) use vector::Vector;
 pub(crate) use widths::Job;
 pub use widths::Width;
@@ -116,4 +120,13 @@ pub(crate) trait Double: Lanes<Scalar = f64> {
     fn split_exponent(self) -> (Self, Self);
     /// self · 2^n for whole numbers n from −1022 to 1023.
     fn times_power_of_two(self, n: Self) -> Self;
+}
+
+/// Says why this machine cannot run this build, if it cannot. This is known of x86-64 alone.
+#[inline(never)]
+pub(crate) fn check_machine() -> Result<(), impl std::fmt::Display> {
+    #[cfg(target_arch = "x86_64")]
+    return cpu::check();
+    #[cfg(not(target_arch = "x86_64"))]
+    Ok::<(), std::convert::Infallible>(())
 }

@@ -80,7 +80,11 @@ macro_rules! many_lanes {
                     *lane = <$scalar>::from(number);
                 }
                 // Counts are small, and above the width they are all the same.
-                #[expect(clippy::cast_lossless, clippy::cast_possible_truncation, reason = "at most the width")]
+                #[expect(
+                    clippy::cast_lossless,
+                    clippy::cast_possible_truncation,
+                    reason = "at most the width"
+                )]
                 let count = count.min($width) as u8 as $scalar;
                 <$lanes>::new(lane).simd_lt(<$lanes>::splat(count))
             }

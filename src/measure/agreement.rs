@@ -59,7 +59,8 @@ impl Agreement {
 
         let image_width = scene.image.width as usize;
         let at = |index: usize| {
-            let [x, y] = [index % image_width, index / image_width].map(|place| u32::try_from(place).unwrap_or(0));
+            let [x, y] =
+                [index % image_width, index / image_width].map(|place| u32::try_from(place).unwrap_or(0));
             (x, y)
         };
         let counts = found.records.par_iter().enumerate().map(|(index, record)| {

@@ -7,5 +7,5 @@ mod wavefront;
 
 pub use agreement::{Agreement, Distance};
 pub use difference::{Difference, heat_map};
-pub use report::{Isa, RenderReport, Seconds};
+pub use report::{RenderReport, Seconds};
 pub use wavefront::{Counters, LanesReport, MemoryReport, StageReport, WavefrontReport};

@@ -1,6 +1,7 @@
 //! What a run did and how long it took, as JSON.
 
 use super::WavefrontReport;
+use crate::lanes::Isa;
 use crate::rays::RayCounts;
 use serde::Serialize;
 
@@ -55,35 +56,4 @@ pub struct Seconds {
     pub write: f64,
     /// From the first to the last.
     pub total: f64,
-}
-
-/// Instruction sets that a build can be for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Isa {
-    /// x86-64 as every such processor has it.
-    Sse2,
-    /// With AVX2.
-    Avx2,
-    /// With AVX-512 F.
-    Avx512,
-    /// 64-bit ARM.
-    Neon,
-    /// None that the lanes know.
-    Scalar,
-}
-
-impl Isa {
-    /// The one that this program was built for.
-    pub const BUILT_FOR: Self = if cfg!(target_feature = "avx512f") {
-        Self::Avx512
-    } else if cfg!(target_feature = "avx2") {
-        Self::Avx2
-    } else if cfg!(target_feature = "sse2") {
-        Self::Sse2
-    } else if cfg!(target_feature = "neon") {
-        Self::Neon
-    } else {
-        Self::Scalar
-    };
 }

@@ -41,8 +41,12 @@ pub(crate) enum Place {
 }
 
 /// What the steps of a traversal cost, in visits of a node; measured with one ray at a time.
-const COSTS: Costs =
-    Costs { node: 1.0, block: [0.8, 0.9, 0.9], room: [BLOCK as f32, BLOCK as f32, 8.0], largest_leaf: BLOCK as u32 };
+const COSTS: Costs = Costs {
+    node: 1.0,
+    block: [0.8, 0.9, 0.9],
+    room: [BLOCK as f32, BLOCK as f32, 8.0],
+    largest_leaf: BLOCK as u32,
+};
 
 /// Lanes may read so far beyond a polygon's last corner.
 const CORNERS_BEYOND: usize = 16;
@@ -209,7 +213,9 @@ struct Source {
 }
 
 fn sources(geometry: &Geometry) -> Vec<Source> {
-    let run = |kind, count: usize| (0..count).map(move |index| Source { kind, index: u32::try_from(index).unwrap_or(u32::MAX) });
+    let run = |kind, count: usize| {
+        (0..count).map(move |index| Source { kind, index: u32::try_from(index).unwrap_or(u32::MAX) })
+    };
     run(Kind::Sphere, geometry.spheres.len())
         .chain(run(Kind::Triangle, geometry.triangles.len()))
         .chain(run(Kind::Polygon, geometry.polygons.len()))

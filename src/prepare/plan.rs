@@ -88,5 +88,11 @@ fn used_materials(scene: &Scene) -> Vec<&Material> {
     for MaterialId(index) in spheres.chain(triangles).chain(polygons) {
         is_used[index as usize] = true;
     }
-    scene.materials.iter().zip(is_used).filter(|(_, is_used)| *is_used).map(|(material, _)| material).collect()
+    scene
+        .materials
+        .iter()
+        .zip(is_used)
+        .filter(|(_, is_used)| *is_used)
+        .map(|(material, _)| material)
+        .collect()
 }

@@ -50,7 +50,12 @@ pub(crate) const NOTHING: u32 = u32::MAX;
 pub(crate) const DEAD: f32 = -1.0;
 
 /// The closest hit of each ray.
-pub(crate) fn closest<F: Single>(hierarchy: &Hierarchy, rays: &Rays<'_>, ends: &mut Ends<'_>, counts: &mut Counts) {
+pub(crate) fn closest<F: Single>(
+    hierarchy: &Hierarchy,
+    rays: &Rays<'_>,
+    ends: &mut Ends<'_>,
+    counts: &mut Counts,
+) {
     if rays.departure.is_empty() {
         walk::<F, false, false>(hierarchy, rays, ends, counts);
     } else {
@@ -59,7 +64,12 @@ pub(crate) fn closest<F: Single>(hierarchy: &Hierarchy, rays: &Rays<'_>, ends: &
 }
 
 /// Whether anything that casts a shadow is in the way of each ray.
-pub(crate) fn occluded<F: Single>(hierarchy: &Hierarchy, rays: &Rays<'_>, ends: &mut Ends<'_>, counts: &mut Counts) {
+pub(crate) fn occluded<F: Single>(
+    hierarchy: &Hierarchy,
+    rays: &Rays<'_>,
+    ends: &mut Ends<'_>,
+    counts: &mut Counts,
+) {
     if rays.departure.is_empty() {
         walk::<F, false, true>(hierarchy, rays, ends, counts);
     } else {

@@ -150,11 +150,8 @@ impl Packet {
             for (axis, (origin, direction)) in by_axis.into_iter().enumerate() {
                 let size = direction.abs().max(least);
                 let (forward, backward) = (origin + padding, origin - padding);
-                let (near, far, component) = if self.backwards[axis] {
-                    (backward, forward, -size)
-                } else {
-                    (forward, backward, size)
-                };
+                let (near, far, component) =
+                    if self.backwards[axis] { (backward, forward, -size) } else { (forward, backward, size) };
                 near.store(&mut self.near_origin[axis][row..]);
                 far.store(&mut self.far_origin[axis][row..]);
                 (one / component).store(&mut self.inverse[axis][row..]);
@@ -197,14 +194,22 @@ impl Packet {
             }
             let node = &hierarchy.nodes[parent as usize];
             let child = node.children[slot as usize];
-            let Some((group, mask)) = self.first_group_in::<F>(node, slot, first_group, counts) else { continue };
+            let Some((group, mask)) = self.first_group_in::<F>(node, slot, first_group, counts) else {
+                continue;
+            };
             match Hierarchy::place(child) {
                 None => {}
                 Some(Place::Node(index)) => {
                     waiting = self.push_children::<F>(hierarchy, index, group, &mut stack, waiting, counts);
                 }
                 Some(leaf) => {
-                    self.visit_leaf::<F, DEPARTING, ANY>(hierarchy, leaf, (node, slot), (group, mask), counts);
+                    self.visit_leaf::<F, DEPARTING, ANY>(
+                        hierarchy,
+                        leaf,
+                        (node, slot),
+                        (group, mask),
+                        counts,
+                    );
                     self.hull.t_max = column_bounds::<F>(&self.t)[1];
                     if ANY && self.hull.t_max < 0.0 {
                         return;
@@ -238,7 +243,10 @@ impl Packet {
         while bits != 0 {
             let slot = bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            #[expect(clippy::cast_possible_truncation, reason = "a slot is below 8, and nodes are numbered in 32 bits")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "a slot is below 8, and nodes are numbered in 32 bits"
+            )]
             let entry =
                 Waiting { node: index as u32, slot: slot as u8, first_group: group, enters: enters[slot] };
             let mut place = waiting;
@@ -337,7 +345,13 @@ impl Packet {
                     }
                     Place::Polygons(first, count) => {
                         for face in &hierarchy.polygons[first..first + count] {
-                            self.test_polygon::<F, DEPARTING, ANY>(hierarchy, face, row, (mask, used), counts);
+                            self.test_polygon::<F, DEPARTING, ANY>(
+                                hierarchy,
+                                face,
+                                row,
+                                (mask, used),
+                                counts,
+                            );
                         }
                     }
                     Place::Node(_) => {}
@@ -557,7 +571,9 @@ fn folded<F: Single>([least, largest]: [F; 2]) -> [f32; 2] {
 #[inline(always)]
 fn column_bounds<F: Single>(column: &Column) -> [f32; 2] {
     let first = F::load(column);
-    folded((F::WIDTH..PACKET).step_by(F::WIDTH).fold([first, first], |bounds, row| {
-        widened(bounds, F::load(&column[row..]))
-    }))
+    folded(
+        (F::WIDTH..PACKET)
+            .step_by(F::WIDTH)
+            .fold([first, first], |bounds, row| widened(bounds, F::load(&column[row..]))),
+    )
 }

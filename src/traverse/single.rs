@@ -161,11 +161,23 @@ pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
                 continue;
             }
             Place::Triangles(index) => {
-                test_triangles::<F::Block, DEPARTING>(&hierarchy.triangles[index], ray, &mut nearest, hierarchy, ANY);
+                test_triangles::<F::Block, DEPARTING>(
+                    &hierarchy.triangles[index],
+                    ray,
+                    &mut nearest,
+                    hierarchy,
+                    ANY,
+                );
                 counts.triangles.add(F::Block::WIDTH, BLOCK.min(F::Block::WIDTH));
             }
             Place::Spheres(index) => {
-                test_spheres::<F::Block, DEPARTING>(&hierarchy.spheres[index], ray, &mut nearest, hierarchy, ANY);
+                test_spheres::<F::Block, DEPARTING>(
+                    &hierarchy.spheres[index],
+                    ray,
+                    &mut nearest,
+                    hierarchy,
+                    ANY,
+                );
                 counts.spheres.add(F::Block::WIDTH, BLOCK.min(F::Block::WIDTH));
             }
             Place::Polygons(first, count) => {

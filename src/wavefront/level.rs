@@ -1,7 +1,8 @@
 //! The queues of one depth.
 
 use super::queue::{
-    AttenuationQueue, ChildQueue, DepartureQueue, NodeQueue, PendingQueue, RadianceQueue, RayQueue, TrailQueue,
+    AttenuationQueue, ChildQueue, DepartureQueue, NodeQueue, PendingQueue, RadianceQueue, RayQueue,
+    TrailQueue,
 };
 use crate::prepare::Plan;
 
@@ -28,7 +29,11 @@ pub(super) struct Level {
 impl Level {
     /// Room for the children of a batch, or for a batch of primary rays at depth 0.
     pub(super) fn new(plan: &Plan, depth: u32, batch: usize, records: bool) -> Self {
-        let rays = if depth == 0 { batch } else { batch * (usize::from(plan.reflection) + usize::from(plan.refraction)) };
+        let rays = if depth == 0 {
+            batch
+        } else {
+            batch * (usize::from(plan.reflection) + usize::from(plan.refraction))
+        };
         let if_needed = |is_needed: bool, rows: usize| if is_needed { rows } else { 0 };
         let has_children = depth < plan.max_depth;
         let has_surfaces = plan.spheres + plan.triangles + plan.polygons > 0;

@@ -34,7 +34,7 @@ mod trail;
 mod worker;
 
 pub use queue::ColumnPlan;
-pub use trail::PixelRecord;
 pub(crate) use statistics::{Stage, Statistics};
+pub use trail::PixelRecord;
 pub use worker::DEFAULT_BATCH;
 pub(crate) use worker::{TileGrid, TilePixels, Worker};

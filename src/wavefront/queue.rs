@@ -244,7 +244,8 @@ mod tests {
     #[test]
     fn what_is_pushed_can_be_got() {
         let mut rays = RayQueue::with_capacity(3);
-        let records = [1.0, 2.0, 3.0].map(|x| RayRecord { origin: [x, 2.0 * x, 3.0 * x], direction: [-x, 0.5, x + 7.0] });
+        let records = [1.0, 2.0, 3.0]
+            .map(|x| RayRecord { origin: [x, 2.0 * x, 3.0 * x], direction: [-x, 0.5, x + 7.0] });
         for (row, record) in (0..).zip(records) {
             assert_eq!(rays.push(record), row);
         }

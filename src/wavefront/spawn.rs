@@ -115,7 +115,8 @@ pub(super) fn spawn<D: Double>(
         }
         for lane in 0..count {
             let [dx, dy, dz, r, g, b] = columns.map(|column| column[lane]);
-            let is_pushed = queues.push(prepared, first + lane, Branch::Reflected, [dx, dy, dz], [r, g, b], is_primary);
+            let is_pushed =
+                queues.push(prepared, first + lane, Branch::Reflected, [dx, dy, dz], [r, g, b], is_primary);
             rays.reflect += u64::from(is_pushed);
         }
     }
@@ -150,8 +151,7 @@ fn refract<D: Double>(
     refractions: &mut RefractionQueue,
 ) -> Vector<D> {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
-    let boundary_at =
-        |normal| Boundary::new(surface.direction, normal, materials.ior, materials.entering);
+    let boundary_at = |normal| Boundary::new(surface.direction, normal, materials.ior, materials.entering);
     // A vertex normal that faces away from the ray has no angle of incidence.
     let faces_ray = surface.direction.dot(surface.shading_normal).lt(zero);
     let normal = Vector::select(faces_ray, surface.shading_normal, surface.geometric_normal);
@@ -159,7 +159,8 @@ fn refract<D: Double>(
 
     let reflectance = boundary.reflectance(materials.ior, materials.entering);
     let white = Vector::new(one, one, one);
-    let total = Vector::select(boundary.is_total, materials.mirror + materials.transmission, materials.mirror);
+    let total =
+        Vector::select(boundary.is_total, materials.mirror + materials.transmission, materials.mirror);
     let reflected_share = Vector::select(materials.is_schlick, white * reflectance, total);
     let passed = Vector::select(
         materials.is_schlick,

@@ -46,7 +46,10 @@ impl Sorted {
     ) {
         self.by_kind.iter_mut().for_each(Vec::clear);
         let background = prepared.scene.image.background.to_array();
-        #[expect(clippy::cast_possible_truncation, reason = "a batch has some thousand rows, a kind 2³⁰ primitives")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a batch has some thousand rows, a kind 2³⁰ primitives"
+        )]
         for (row, &id) in hits.id[..hits.len()].iter().enumerate() {
             let ray = first_ray + row;
             if id == NOTHING {
@@ -122,8 +125,7 @@ impl Out<'_, '_> {
 
         let zero = D::splat(0.0);
         let entering = found.direction.dot(found.geometric_normal).lt(zero);
-        let facing =
-            |normal: Vector<D>| Vector::select(entering, normal, -normal);
+        let facing = |normal: Vector<D>| Vector::select(entering, normal, -normal);
         round_rows(found.position, &mut self.surfaces.position, first, chunk.len());
         round_rows(facing(found.geometric_normal), &mut self.surfaces.geometric_normal, first, chunk.len());
         if self.prepared.plan.vertex_normals {
@@ -368,11 +370,8 @@ impl<D: Double> SurfaceLanes<D> {
     #[inline(always)]
     pub(super) fn read(surfaces: &SurfaceQueue, normals: &NormalQueue, row: usize) -> Self {
         let geometric_normal = widen_vector(&surfaces.geometric_normal, row);
-        let shading_normal = if normals.len() == 0 {
-            geometric_normal
-        } else {
-            widen_vector(&normals.shading_normal, row)
-        };
+        let shading_normal =
+            if normals.len() == 0 { geometric_normal } else { widen_vector(&normals.shading_normal, row) };
         Self {
             direction: widen_vector(&surfaces.direction, row),
             position: widen_vector(&surfaces.position, row),

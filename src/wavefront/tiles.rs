@@ -51,7 +51,12 @@ impl Tiles {
 
     /// The samples of a tile, pixels along a Z-shaped curve so that any run of them lies close together. The samples of a
     /// pixel follow each other in order.
-    pub(super) fn samples(&self, tile: Region, image_height: u32, samples: u32) -> impl Iterator<Item = Sample> {
+    pub(super) fn samples(
+        &self,
+        tile: Region,
+        image_height: u32,
+        samples: u32,
+    ) -> impl Iterator<Item = Sample> {
         let pixels = (0..self.side * self.side).filter_map(move |curve| {
             let (dx, dy) = (every_other_bit(curve), every_other_bit(curve >> 1));
             (dx < tile.width() && dy < tile.height()).then_some((dx, dy))
@@ -90,7 +95,8 @@ mod tests {
                 for sample in tiles.samples(tile, 100, samples) {
                     assert!(seen.insert((sample.x, sample.y, sample.s)), "{sample:?} came twice");
                     assert_eq!(sample.pixel, (sample.y - tile.y0) * tile.width() + sample.x - tile.x0);
-                    let follows = last.is_some_and(|last: Sample| last.pixel == sample.pixel && last.s + 1 == sample.s);
+                    let follows =
+                        last.is_some_and(|last: Sample| last.pixel == sample.pixel && last.s + 1 == sample.s);
                     assert!(sample.s == 0 || follows, "samples of a pixel stay in order");
                     last = Some(sample);
                 }

@@ -77,7 +77,9 @@ impl Scratch {
         let has_surfaces = plan.spheres + plan.triangles + plan.polygons > 0;
         Self {
             hits: HitQueue::with_capacity(batch),
-            sorted: Sorted::with_capacity([plan.spheres, plan.triangles, plan.polygons].map(|count| if_needed(count > 0))),
+            sorted: Sorted::with_capacity(
+                [plan.spheres, plan.triangles, plan.polygons].map(|count| if_needed(count > 0)),
+            ),
             surfaces: SurfaceQueue::with_capacity(if_needed(has_surfaces)),
             normals: NormalQueue::with_capacity(if_needed(plan.vertex_normals)),
             shadows: ShadowQueue::with_capacity(if_needed(plan.local_light)),

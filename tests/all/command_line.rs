@@ -171,8 +171,17 @@ fn wrong_usage_is_2_and_says_what_was_meant() {
     assert_exit(&place.render("a.jpg", &[]), 2);
     assert_exit(&wavelane(&[]), 2);
     assert_exit(&wavelane(&["--help"]), 0);
-    assert_exit(&wavelane(&["--version"]), 0);
     assert_eq!(place.folder.names(), ["scene.toml"], "no picture and nothing else is left");
+}
+
+#[test]
+fn the_version_says_what_it_was_built_for() {
+    let version = env!("CARGO_PKG_VERSION");
+    let output = wavelane(&["--version"]);
+    assert_exit(&output, 0);
+    let built_for = wavelane::lanes::Isa::BUILT_FOR;
+    assert_eq!(stdout(&output), format!("wavelane {version}\nbuilt for {built_for}\n"));
+    assert_eq!(stdout(&wavelane(&["-V"])), format!("wavelane {version}\n"));
 }
 
 #[test]

@@ -23,7 +23,13 @@ fn the_picture_does_not_depend_on_threads_or_crop() {
     let whole = render_whole(&scene).image;
     let region = Region { x0: 13, y0: 7, x1: 50, y1: 41 };
     for threads in [1, 2, 5] {
-        let options = RenderOptions { region, threads, on_progress: &|_| {}, stop: &AtomicBool::new(false) };
+        let options = RenderOptions {
+            engine: wavelane::render::Engine::Reference,
+            region,
+            threads,
+            on_progress: &|_| {},
+            stop: &AtomicBool::new(false),
+        };
         let part = render(&scene, &options).unwrap().image;
         for y in 0..part.height {
             for x in 0..part.width {
