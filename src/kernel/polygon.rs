@@ -48,6 +48,8 @@ pub(crate) struct Meeting<L: Lanes> {
     pub(crate) meets: L::Mask,
     /// Distance of the ray's origin from the plane; of either sign.
     pub(crate) height: L,
+    /// n·d.
+    pub(crate) slope: L,
 }
 
 /// A plane through a point. Seen nearly edge-on it is met anywhere, but no point of the polygon is nearer or farther than
@@ -64,5 +66,5 @@ pub(crate) fn meet_plane<L: Lanes>(
     let [one, other] = corner_ts;
     let (least, largest) = (one.min(other), one.max(other));
     let t = (height / slope).max(least).min(largest);
-    Meeting { t, meets: !slope.eq(zero), height }
+    Meeting { t, meets: !slope.eq(zero), height, slope }
 }

@@ -10,6 +10,8 @@ pub(crate) struct Meeting<L: Lanes> {
     pub(crate) inside: L::Mask,
     /// Distance of the ray's origin from the plane, times twice the triangle's area; of either sign.
     pub(crate) volume: L,
+    /// Twice the triangle's area as seen along the ray, sheared; of either sign.
+    pub(crate) seen_double_area: L,
 }
 
 /// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign; t is the mean of
@@ -28,5 +30,5 @@ pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) 
     let one_sided = least.ge(zero) | largest.le(zero);
     // Seen edge-on there is no area, and t is not a number.
     let inside = one_sided & !area.eq(zero);
-    Meeting { t: volume * ray.t_per_z / area, inside, volume }
+    Meeting { t: volume * ray.t_per_z / area, inside, volume, seen_double_area: area }
 }

@@ -10,27 +10,30 @@ pub(crate) const BLOCK: usize = 4;
 /// |---|---|
 /// | 0–143 | `vertices`: first, second and third; x, y and z; a lane a triangle |
 /// | 144–159 | `slack` |
-/// | 160–175 | `ids` |
+/// | 160–175 | `double_area` |
+/// | 176–191 | `ids` |
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleBlock {
     pub(crate) vertices: [[[f32; BLOCK]; 3]; 3],
     /// What is nearer to the plane than this touches it, times twice the area; see [`touch_distance`].
     pub(crate) slack: [f32; BLOCK],
+    pub(crate) double_area: [f32; BLOCK],
     pub(crate) ids: [u32; BLOCK],
 }
 
 /// | bytes | field |
 /// |---|---|
 /// | 0–47 | `centers`: x, y and z; a lane a sphere |
-/// | 48–63 | `radii_squared` |
+/// | 48–63 | `radii` |
 /// | 64–79 | `slack` |
 /// | 80–95 | `ids` |
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub(crate) struct SphereBlock {
     pub(crate) centers: [[f32; BLOCK]; 3],
-    pub(crate) radii_squared: [f32; BLOCK],
+    /// Not a number where there is no sphere.
+    pub(crate) radii: [f32; BLOCK],
     /// What is nearer to the surface than this touches it, times the radius.
     pub(crate) slack: [f32; BLOCK],
     pub(crate) ids: [u32; BLOCK],
@@ -51,10 +54,12 @@ pub(crate) struct PolygonFace {
     pub(crate) first_corner: u32,
     /// As many as corners.
     pub(crate) edges: u32,
+    /// In its column of the scene's geometry.
+    pub(crate) source: u32,
 }
 
-const _: () = assert!(size_of::<TriangleBlock>() == 176 && size_of::<SphereBlock>() == 96);
-const _: () = assert!(size_of::<PolygonFace>() == 40);
+const _: () = assert!(size_of::<TriangleBlock>() == 192 && size_of::<SphereBlock>() == 96);
+const _: () = assert!(size_of::<PolygonFace>() == 44);
 
 /// How near a point that was rounded to f32 is to a surface that it lies on, as the kernels see it: the point itself is off
 /// by √3·u of its coordinates, and the test's own rounding is 6u of the distances from the point to the primitive's ends,
@@ -65,8 +70,12 @@ pub(super) fn touch_distance(extent: f32, size: f32) -> f32 {
 
 impl TriangleBlock {
     /// Triangles of no area, which nothing hits.
-    pub(super) const EMPTY: Self =
-        Self { vertices: [[[0.0; BLOCK]; 3]; 3], slack: [0.0; BLOCK], ids: [u32::MAX; BLOCK] };
+    pub(super) const EMPTY: Self = Self {
+        vertices: [[[0.0; BLOCK]; 3]; 3],
+        slack: [0.0; BLOCK],
+        double_area: [0.0; BLOCK],
+        ids: [u32::MAX; BLOCK],
+    };
 
     pub(super) fn set(&mut self, lane: usize, vertices: [Vec3; 3], id: u32) {
         for (vertex, point) in vertices.into_iter().enumerate() {
@@ -77,7 +86,8 @@ impl TriangleBlock {
         let [a, b, c] = vertices;
         let extent = vertices.map(|vertex| vertex.abs().max_element()).into_iter().fold(0.0, f32::max);
         let size = [a - b, b - c, c - a].map(Vec3::length).into_iter().fold(0.0, f32::max);
-        self.slack[lane] = touch_distance(extent, size) * (b - a).cross(c - a).length();
+        self.double_area[lane] = (b - a).cross(c - a).length();
+        self.slack[lane] = touch_distance(extent, size) * self.double_area[lane];
         self.ids[lane] = id;
     }
 }
@@ -86,7 +96,7 @@ impl SphereBlock {
     /// Spheres of no surface, which nothing hits.
     pub(super) const EMPTY: Self = Self {
         centers: [[0.0; BLOCK]; 3],
-        radii_squared: [-1.0; BLOCK],
+        radii: [f32::NAN; BLOCK],
         slack: [0.0; BLOCK],
         ids: [u32::MAX; BLOCK],
     };
@@ -95,7 +105,7 @@ impl SphereBlock {
         for axis in 0..3 {
             self.centers[axis][lane] = center[axis];
         }
-        self.radii_squared[lane] = radius * radius;
+        self.radii[lane] = radius;
         let extent = center.abs().max_element() + radius;
         self.slack[lane] = touch_distance(extent, 2.0 * radius) * radius;
         self.ids[lane] = id;

@@ -17,6 +17,8 @@ pub(crate) struct Hierarchy {
     /// x, y and z of the polygons' corners. After its last corner a polygon has its first again, and then as often as
     /// it takes for lanes to read on.
     pub(crate) corners: [Vec<f32>; 3],
+    /// Unit, outward, of the scene's polygons in their order; in f64 for what follows a hit.
+    pub(crate) polygon_normals: Vec<DVec3>,
     /// Largest magnitude of a coordinate.
     pub(crate) extent: f32,
     /// By id, whether a primitive lets light pass; empty where none does.
@@ -71,6 +73,7 @@ impl Hierarchy {
             triangles: Vec::new(),
             polygons: Vec::new(),
             corners: Default::default(),
+            polygon_normals: vec![DVec3::Z; geometry.polygons.len()],
             extent,
             shadowless: shadowless(scene),
             depth: tree.depth,
@@ -119,6 +122,7 @@ impl Hierarchy {
             spheres: size_of_val(self.spheres.as_slice()),
             triangles: size_of_val(self.triangles.as_slice()),
             polygons: size_of_val(self.polygons.as_slice())
+                + size_of_val(self.polygon_normals.as_slice())
                 + self.corners.iter().map(|column| size_of_val(column.as_slice())).sum::<usize>(),
         }
     }
@@ -176,16 +180,18 @@ impl Hierarchy {
         }
         let wide: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
         // What has no plane was left out of the scene.
-        let normal = polygon_normal(&wide).unwrap_or(DVec3::Z).as_vec3();
+        let normal = polygon_normal(&wide).unwrap_or(DVec3::Z);
+        self.polygon_normals[source.index as usize] = normal;
         let bounds = bounds_of(&corners);
         let size = (bounds.high - bounds.low).length();
         self.polygons.push(PolygonFace {
-            normal: normal.to_array(),
+            normal: normal.as_vec3().to_array(),
             point: corners[0].to_array(),
             slack: touch_distance(largest_coordinate(bounds), size),
             id: polygon.id.0,
             first_corner: u32::try_from(first).unwrap_or(u32::MAX),
             edges: polygon.vertices.end - polygon.vertices.start,
+            source: source.index,
         });
     }
 }

@@ -19,8 +19,7 @@ pub use plan::Plan;
 pub(crate) use scale::Scale;
 pub(crate) use view::View;
 
-use crate::scene::{Scene, polygon_normal};
-use glam::DVec3;
+use crate::scene::Scene;
 use thiserror::Error;
 
 /// A scene made ready.
@@ -30,8 +29,6 @@ pub struct Prepared<'a> {
     pub(crate) view: View,
     pub(crate) hierarchy: Hierarchy,
     pub(crate) directory: Directory,
-    /// Unit, outward, of the scene's polygons in their order.
-    pub(crate) polygon_normals: Vec<DVec3>,
     pub(crate) plan: Plan,
 }
 
@@ -63,19 +60,7 @@ impl<'a> Prepared<'a> {
             view: View::new(&scene.camera, &scene.image, scale),
             hierarchy: Hierarchy::new(scene, scale),
             directory,
-            polygon_normals: polygon_normals(scene),
             plan: Plan::new(scene),
         })
     }
-}
-
-fn polygon_normals(scene: &Scene) -> Vec<DVec3> {
-    let geometry = &scene.geometry;
-    let normal = |polygon: &crate::scene::Polygon| {
-        let run = polygon.vertices.start as usize..polygon.vertices.end as usize;
-        let corners: Vec<DVec3> = geometry.vertices[run].iter().map(|corner| corner.as_dvec3()).collect();
-        // What has no plane was left out of the scene.
-        polygon_normal(&corners).unwrap_or(DVec3::Z)
-    };
-    geometry.polygons.iter().map(normal).collect()
 }

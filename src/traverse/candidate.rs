@@ -20,51 +20,76 @@ pub(super) struct Start<F: Single> {
     pub(super) inward: F::Mask,
 }
 
+/// A hit of a primitive, in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Candidate<F: Single> {
+    pub(super) t: F,
+    /// How far t may be from the true one, at most.
+    pub(super) error: F,
+    pub(super) hit: F::Mask,
+}
+
+/// Ray space, the line, and how far a surface may seem to be from where it is: `bounds::PADDING` of the coordinates that
+/// take part, more than any kernel's own rounding.
+#[derive(Clone, Copy)]
+pub(super) struct View<F: Single> {
+    pub(super) space: RaySpace<F>,
+    pub(super) line: Line<F>,
+    pub(super) padding: F,
+}
+
 #[inline(always)]
 pub(super) fn triangle<F: Single, const DEPARTING: bool>(
     space: &RaySpace<F>,
+    padding: F,
     vertices: [[F; 3]; 3],
-    slack: F,
+    [slack, double_area]: [F; 2],
     start: Start<F>,
-) -> (F, F::Mask) {
+) -> Candidate<F> {
     let zero = F::splat(0.0);
     let meeting = triangle::meet(space, vertices, zero);
     let hit = meeting.inside & meeting.t.gt(zero);
-    (meeting.t, if DEPARTING { hit & meeting.volume.abs().gt(slack) & !start.own } else { hit })
+    let hit = if DEPARTING { hit & meeting.volume.abs().gt(slack) & !start.own } else { hit };
+    // cos θ·|d| = |seen area·d_z| / area.
+    let error = padding * double_area * (space.t_per_z / meeting.seen_double_area).abs();
+    Candidate { t: meeting.t, error, hit }
 }
 
 #[inline(always)]
 pub(super) fn sphere<F: Single, const DEPARTING: bool>(
     line: &Line<F>,
+    padding: F,
     center: Vector<F>,
-    radius_squared: F,
-    slack: F,
+    [radius, slack]: [F; 2],
     start: Start<F>,
-) -> (F, F::Mask) {
+) -> Candidate<F> {
     let zero = F::splat(0.0);
-    let meeting = sphere::meet(line, center, radius_squared, zero);
+    let meeting = sphere::meet(line, center, radius * radius, zero);
+    // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
+    let error = (padding + padding) * radius / (meeting.half_t * line.a);
     if !DEPARTING {
-        return meeting.nearest(zero);
+        let (t, hit) = meeting.nearest(zero);
+        return Candidate { t, error, hit };
     }
     let (t, hit) = meeting.nearest_beyond(line, slack);
     let far_side = meeting.far_side();
     let own_hit = start.own & start.inward & far_side.gt(zero);
-    (F::select(start.own, far_side, t), own_hit | (!start.own & hit))
+    Candidate { t: F::select(start.own, far_side, t), error, hit: own_hit | (!start.own & hit) }
 }
 
 /// `plane` is a point and the normal; `outline` has taken in all edges.
 #[inline(always)]
 pub(super) fn polygon<F: Single, const DEPARTING: bool>(
-    line: &Line<F>,
-    t_per_z: F,
+    view: &View<F>,
     plane: [Vector<F>; 2],
     outline: &Outline<F>,
     slack: F,
     start: Start<F>,
-) -> (F, F::Mask) {
+) -> Candidate<F> {
     let zero = F::splat(0.0);
-    let corner_ts = [outline.least_z * t_per_z, outline.largest_z * t_per_z];
-    let meeting = polygon::meet_plane([line.origin, line.direction], plane, corner_ts, zero);
+    let corner_ts = [outline.least_z * view.space.t_per_z, outline.largest_z * view.space.t_per_z];
+    let meeting = polygon::meet_plane([view.line.origin, view.line.direction], plane, corner_ts, zero);
     let hit = outline.odd & meeting.meets & meeting.t.gt(zero);
-    (meeting.t, if DEPARTING { hit & meeting.height.abs().gt(slack) & !start.own } else { hit })
+    let hit = if DEPARTING { hit & meeting.height.abs().gt(slack) & !start.own } else { hit };
+    Candidate { t: meeting.t, error: view.padding / meeting.slope.abs(), hit }
 }

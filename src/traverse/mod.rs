@@ -1,15 +1,17 @@
 //! How rays walk the tree.
 //!
 //! - `candidate`: what counts as a hit of a primitive, for one pair of ray and primitive in each lane
+//! - `exact`: which of two hits is the nearer, where f32 cannot tell
 //! - `single`: one ray at a time, its lanes across the children of a node and the primitives of a block
 //! - `packet`: 64 rays at a time, their lanes across rays
 //!
-//! Both do the same arithmetic at the primitive, box tests never exclude a hit, and of equal t the smallest id counts, so
-//! it does not show who walked. [`closest`] and [`occluded`] choose for each run of 64 rays.
+//! Both do the same arithmetic at the primitive, box tests never exclude a hit, and which of two hits is seen does not
+//! depend on which is found first, so it does not show who walked. [`closest`] and [`occluded`] choose for each run of 64 rays.
 
 mod candidate;
 mod coherence;
 mod counts;
+mod exact;
 mod packet;
 mod single;
 
@@ -91,7 +93,7 @@ fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
         let count = (rays.count - first).min(RUN);
         if packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
             packet.walk::<F, DEPARTING, ANY>(hierarchy, counts);
-            packet.scatter::<ANY>(ends, first);
+            packet.scatter::<ANY>(hierarchy, ends, first);
         } else {
             for row in first..first + count {
                 let ray = single::Ray::new(hierarchy, rays, row);

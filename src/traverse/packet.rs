@@ -5,16 +5,17 @@
 //! first active ray); Boulos, Wald and Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets", 2006
 //! (interval arithmetic).
 
-use super::candidate::{self, Start};
+use super::candidate::{self, Candidate, Start, View};
 use super::coherence::WIDEST_SLOPES;
-use super::{Counts, DEAD, Ends, NOTHING, Rays};
+use super::exact::{self, Spot};
+use super::{Counts, DEAD, Ends, Rays};
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
 use crate::kernel::{RaySpace, axes_from};
 use crate::lanes::{Lanes, Mask, Single, Vector};
-use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
-use crate::prepare::{BLOCK, Hierarchy, Place, PolygonFace, SphereBlock, TriangleBlock};
+use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
+use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// Rays of a packet.
 pub(super) const PACKET: usize = 64;
@@ -36,7 +37,13 @@ pub(super) struct Packet {
     inverse_a: Column,
     /// The nearest hit so far, or where hits end to be of interest.
     t: Column,
-    id: [u32; PACKET],
+    error: Column,
+    /// Nothing beyond this can be nearer: t + error.
+    end: Column,
+    /// Where the nearest hit lies in the hierarchy, as a [`Spot`].
+    spot: [u32; PACKET],
+    /// By how much boxes are grown.
+    padding: Column,
     departure: [u32; PACKET],
     /// Order of axes in ray space, the same for all.
     axes: [usize; 3],
@@ -83,7 +90,10 @@ impl Packet {
             a: column,
             inverse_a: column,
             t: [DEAD; PACKET],
-            id: [NOTHING; PACKET],
+            error: column,
+            end: [DEAD; PACKET],
+            spot: [Spot::NOTHING.0; PACKET],
+            padding: column,
             departure: [super::NOWHERE; PACKET],
             axes: [0, 1, 2],
             backwards: [false; 3],
@@ -123,7 +133,9 @@ impl Packet {
             }
         }
         self.t.copy_from_slice(&t[run.clone()]);
-        self.id = [NOTHING; PACKET];
+        self.end = self.t;
+        self.error = [0.0; PACKET];
+        self.spot = [Spot::NOTHING.0; PACKET];
         if !rays.departure.is_empty() {
             self.departure.copy_from_slice(&rays.departure[run]);
         }
@@ -145,6 +157,7 @@ impl Packet {
 
             let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
             let padding = (F::splat(hierarchy.extent) + farthest) * F::splat(PADDING);
+            padding.store(&mut self.padding[row..]);
             let least = third.abs() * F::splat(LEAST_COMPONENT);
             let by_axis = [(origin.x, direction.x), (origin.y, direction.y), (origin.z, direction.z)];
             for (axis, (origin, direction)) in by_axis.into_iter().enumerate() {
@@ -166,14 +179,16 @@ impl Packet {
             self.hull.far_origin[axis] = far[against];
             self.hull.inverse[axis] = inverse;
         }
-        self.hull.t_max = column_bounds::<F>(&self.t)[1];
+        self.hull.t_max = column_bounds::<F>(&self.end)[1];
     }
 
     /// Puts the results back.
-    pub(super) fn scatter<const ANY: bool>(&self, ends: &mut Ends<'_>, first: usize) {
+    pub(super) fn scatter<const ANY: bool>(&self, hierarchy: &Hierarchy, ends: &mut Ends<'_>, first: usize) {
         ends.t[first..first + PACKET].copy_from_slice(&self.t);
         if !ANY {
-            ends.id[first..first + PACKET].copy_from_slice(&self.id);
+            for (id, &spot) in ends.id[first..first + PACKET].iter_mut().zip(&self.spot) {
+                *id = Spot(spot).id(hierarchy);
+            }
         }
     }
 
@@ -210,7 +225,7 @@ impl Packet {
                         (group, mask),
                         counts,
                     );
-                    self.hull.t_max = column_bounds::<F>(&self.t)[1];
+                    self.hull.t_max = column_bounds::<F>(&self.end)[1];
                     if ANY && self.hull.t_max < 0.0 {
                         return;
                     }
@@ -314,7 +329,7 @@ impl Packet {
         let near = Vector::new(plane(0, false), plane(1, false), plane(2, false));
         let far = Vector::new(plane(0, true), plane(1, true), plane(2, true));
         counts.boxes.add(F::WIDTH, self.count.saturating_sub(row).min(F::WIDTH));
-        bounds::enter(&slabs, near, far, F::splat(0.0), F::load(&self.t[row..])).1
+        bounds::enter(&slabs, near, far, F::splat(0.0), F::load(&self.end[row..])).1
     }
 
     /// Tests what is in a leaf, against every group from the given one on whose rays meet its box.
@@ -336,18 +351,16 @@ impl Packet {
                 let used = bits.count_ones() as usize;
                 match leaf {
                     Place::Triangles(index) => {
-                        let block = &hierarchy.triangles[index];
-                        self.test_triangles::<F, DEPARTING, ANY>(hierarchy, block, row, (mask, used), counts);
+                        self.test_triangles::<F, DEPARTING, ANY>(hierarchy, index, row, (mask, used), counts);
                     }
                     Place::Spheres(index) => {
-                        let block = &hierarchy.spheres[index];
-                        self.test_spheres::<F, DEPARTING, ANY>(hierarchy, block, row, (mask, used), counts);
+                        self.test_spheres::<F, DEPARTING, ANY>(hierarchy, index, row, (mask, used), counts);
                     }
                     Place::Polygons(first, count) => {
-                        for face in &hierarchy.polygons[first..first + count] {
+                        for index in first..first + count {
                             self.test_polygon::<F, DEPARTING, ANY>(
                                 hierarchy,
-                                face,
+                                index,
                                 row,
                                 (mask, used),
                                 counts,
@@ -369,15 +382,16 @@ impl Packet {
     fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        block: &TriangleBlock,
+        index: usize,
         row: usize,
         (mask, used): (F::Mask, usize),
         counts: &mut Counts,
     ) {
-        let space = self.space::<F>(row);
+        let block = &hierarchy.triangles[index];
+        let (space, padding) = (self.space::<F>(row), F::load(&self.padding[row..]));
         for lane in 0..BLOCK {
             let id = block.ids[lane];
-            if id == NOTHING {
+            if id == super::NOTHING {
                 return; // the others are empty too
             }
             if ANY && !hierarchy.casts_shadow(id) {
@@ -386,10 +400,10 @@ impl Packet {
             let vertices =
                 [0, 1, 2].map(|vertex| self.axes.map(|axis| F::splat(block.vertices[vertex][axis][lane])));
             let start = self.start::<F, DEPARTING>(row, id);
-            let slack = F::splat(block.slack[lane]);
-            let (t, hit) = candidate::triangle::<F, DEPARTING>(&space, vertices, slack, start);
-            self.offer::<F, ANY>(row, t, hit & mask, id);
+            let sizes = [F::splat(block.slack[lane]), F::splat(block.double_area[lane])];
+            let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
             counts.triangles.add(F::WIDTH, used);
+            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, Spot::triangle(index, lane));
         }
     }
 
@@ -397,27 +411,27 @@ impl Packet {
     fn test_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        block: &SphereBlock,
+        index: usize,
         row: usize,
         (mask, used): (F::Mask, usize),
         counts: &mut Counts,
     ) {
-        let line = self.line::<F>(row);
+        let block = &hierarchy.spheres[index];
+        let (line, padding) = (self.line::<F>(row), F::load(&self.padding[row..]));
         for lane in 0..BLOCK {
             let id = block.ids[lane];
-            if id == NOTHING {
+            if id == super::NOTHING {
                 return; // the others are empty too
             }
             if ANY && !hierarchy.casts_shadow(id) {
                 continue;
             }
             let center = Vector::splat(block.centers.map(|column| column[lane]));
-            let radius_squared = F::splat(block.radii_squared[lane]);
             let start = self.start::<F, DEPARTING>(row, id);
-            let slack = F::splat(block.slack[lane]);
-            let (t, hit) = candidate::sphere::<F, DEPARTING>(&line, center, radius_squared, slack, start);
-            self.offer::<F, ANY>(row, t, hit & mask, id);
+            let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
+            let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
             counts.spheres.add(F::WIDTH, used);
+            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, Spot::sphere(index, lane));
         }
     }
 
@@ -425,11 +439,12 @@ impl Packet {
     fn test_polygon<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        face: &PolygonFace,
+        index: usize,
         row: usize,
         (mask, used): (F::Mask, usize),
         counts: &mut Counts,
     ) {
+        let face = &hierarchy.polygons[index];
         if ANY && !hierarchy.casts_shadow(face.id) {
             return;
         }
@@ -450,36 +465,93 @@ impl Packet {
         if !(outline.odd & mask).any() {
             return;
         }
+        let view = View { space, line: self.line(row), padding: F::load(&self.padding[row..]) };
         let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
         let start = self.start::<F, DEPARTING>(row, face.id);
-        let (t, hit) = candidate::polygon::<F, DEPARTING>(
-            &self.line(row),
-            space.t_per_z,
-            plane,
-            &outline,
-            F::splat(face.slack),
-            start,
-        );
-        self.offer::<F, ANY>(row, t, hit & mask, face.id);
+        let candidate =
+            candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
+        self.offer::<F, ANY>(hierarchy, row, &candidate, mask, Spot::polygon(index));
     }
 
-    /// Keeps a hit where it is nearer than what was found so far or, at the same t, of smaller id.
+    /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See [`exact`] for those
+    /// lanes in which f32 cannot tell.
     #[inline(always)]
-    fn offer<F: Single, const ANY: bool>(&mut self, row: usize, t: F, hit: F::Mask, id: u32) {
+    fn offer<F: Single, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        row: usize,
+        candidate: &Candidate<F>,
+        mask: F::Mask,
+        spot: Spot,
+    ) {
+        let Candidate { t, error, hit } = *candidate;
+        let hit = hit & mask;
+        if !hit.any() {
+            return;
+        }
         let nearest = F::load(&self.t[row..]);
+        let (closer, unclear);
         if ANY {
-            let t = F::select(hit & t.lt(nearest), F::splat(DEAD), nearest);
-            t.store(&mut self.t[row..]);
+            closer = hit & (t + error).lt(nearest);
+            unclear = hit & !closer & !(t - error).ge(nearest);
+        } else {
+            let (nearest_error, end) = (F::load(&self.error[row..]), F::load(&self.end[row..]));
+            closer = hit & (t + error).lt(nearest - nearest_error);
+            unclear = hit & !closer & !(t - error).gt(end);
+        }
+        let mut bits = unclear.bits();
+        if bits != 0 {
+            let mut ts = [0.0; 16];
+            t.store(&mut ts);
+            let mut is_taken = [0.0; 16];
+            while bits != 0 {
+                let lane = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                is_taken[lane] =
+                    f32::from(u8::from(self.decide::<ANY>(hierarchy, row + lane, ts[lane], spot)));
+            }
+            self.take::<F, ANY>(row, candidate, closer | F::load(&is_taken).gt(F::splat(0.0)), spot);
+        } else if closer.any() {
+            self.take::<F, ANY>(row, candidate, closer, spot);
+        }
+    }
+
+    /// Decides in f64 for one ray.
+    #[cold]
+    fn decide<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, t: f32, spot: Spot) -> bool {
+        let [origin, direction] =
+            [&self.origin, &self.direction].map(|columns| columns.each_ref().map(|c| c[row]));
+        let line = exact::Line::new(origin, direction, self.departure[row]);
+        let nearest = Spot(self.spot[row]);
+        if ANY {
+            line.is_before_light(hierarchy, spot, t, self.t[row])
+        } else if nearest == Spot::NOTHING {
+            t < self.t[row]
+        } else {
+            line.is_nearer(hierarchy, (spot, t), (nearest, self.t[row]))
+        }
+    }
+
+    #[inline(always)]
+    fn take<F: Single, const ANY: bool>(
+        &mut self,
+        row: usize,
+        candidate: &Candidate<F>,
+        taken: F::Mask,
+        spot: Spot,
+    ) {
+        let Candidate { t, error, .. } = *candidate;
+        if ANY {
+            let dead = F::select(taken, F::splat(DEAD), F::load(&self.t[row..]));
+            dead.store(&mut self.t[row..]);
+            dead.store(&mut self.end[row..]);
             return;
         }
-        if !(hit & t.le(nearest)).any() {
-            return;
-        }
-        let (ids, own) = (F::load_ids(&self.id[row..]), F::splat_ids(id));
-        // No id is smaller than that of nothing, so a hit at the very end of the ray does not count.
-        let closer = hit & (t.lt(nearest) | (t.eq(nearest) & F::ids_lt(own, ids)));
-        F::select(closer, t, nearest).store(&mut self.t[row..]);
-        F::store_ids(F::select_ids(closer, own, ids), &mut self.id[row..]);
+        F::select(taken, t, F::load(&self.t[row..])).store(&mut self.t[row..]);
+        F::select(taken, error, F::load(&self.error[row..])).store(&mut self.error[row..]);
+        F::select(taken, t + error, F::load(&self.end[row..])).store(&mut self.end[row..]);
+        let spots = F::select_ids(taken, F::splat_ids(spot.0), F::load_ids(&self.spot[row..]));
+        F::store_ids(spots, &mut self.spot[row..]);
     }
 
     #[inline(always)]

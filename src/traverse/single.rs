@@ -1,14 +1,15 @@
 //! One ray at a time: its lanes are the children of a node and the primitives of a block.
 
-use super::candidate::{self, Start};
-use super::{Counts, DEAD, NOTHING, Rays};
+use super::candidate::{self, Candidate, Start, View};
+use super::exact::{self, Spot};
+use super::{Counts, DEAD, Rays};
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
 use crate::kernel::{RaySpace, axes_from};
 use crate::lanes::{Lanes, Mask, Single, Vector};
 use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
-use crate::prepare::{BLOCK, Hierarchy, Place, PolygonFace, SphereBlock, TriangleBlock};
+use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// What the tests need of a ray.
 pub(super) struct Ray {
@@ -25,6 +26,8 @@ pub(super) struct Ray {
     t_per_z: f32,
     /// d·d.
     a: f32,
+    /// By how much boxes are grown.
+    padding: f32,
     departure: u32,
 }
 
@@ -63,6 +66,7 @@ impl Ray {
             shear: [direction[axes[0]] / direction[third], direction[axes[1]] / direction[third]],
             t_per_z: 1.0 / direction[third],
             a: direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2],
+            padding,
             departure: rays.departure.get(row).copied().unwrap_or(super::NOWHERE),
         }
     }
@@ -104,30 +108,63 @@ impl Ray {
 /// The closest hit so far.
 struct Nearest {
     t: f32,
-    id: u32,
+    error: f32,
+    spot: Spot,
+    /// Nothing beyond this can be nearer: t + error.
+    end: f32,
 }
 
-impl Nearest {
+/// What takes a candidate, and how.
+struct Target<'a> {
+    hierarchy: &'a Hierarchy,
+    ray: &'a Ray,
+    nearest: Nearest,
+}
+
+impl Target<'_> {
+    /// Takes a hit in if it is nearer, or if any will do and it casts a shadow.
     #[inline(always)]
-    fn offer(&mut self, t: f32, id: u32) {
-        if t < self.t || (t == self.t && id < self.id && self.id != NOTHING) {
-            *self = Self { t, id };
+    fn offer<const ANY: bool>(&mut self, t: f32, error: f32, spot: Spot) {
+        let nearest = &self.nearest;
+        let exact = || exact::Line::new(self.ray.origin, self.ray.direction, self.ray.departure);
+        let is_taken = if ANY {
+            let is_beyond = t - error >= nearest.t;
+            let is_before_end = t + error < nearest.t
+                || (!is_beyond && exact().is_before_light(self.hierarchy, spot, t, nearest.t));
+            is_before_end && self.hierarchy.casts_shadow(spot.id(self.hierarchy))
+        } else if t + error < nearest.t - nearest.error {
+            true
+        } else if t - error > nearest.end {
+            false
+        } else if nearest.spot == Spot::NOTHING {
+            t < nearest.t
+        } else {
+            exact().is_nearer(self.hierarchy, (spot, t), (nearest.spot, nearest.t))
+        };
+        if is_taken {
+            self.nearest = Nearest { t, error, spot, end: t + error };
         }
     }
 
-    /// Offers the lanes of a block that hit.
+    /// Offers the lanes that hit; `spot` says where the first of them lies.
     #[inline(always)]
-    fn offer_lanes<F: Single>(&mut self, (t, hit): (F, F::Mask), ids: &[u32]) {
-        let mut bits = (hit & t.le(F::splat(self.t))).bits();
+    fn offer_lanes<F: Single, const ANY: bool>(
+        &mut self,
+        candidate: &Candidate<F>,
+        spot: impl Fn(usize) -> Spot,
+    ) {
+        let Candidate { t, error, hit } = *candidate;
+        let mut bits = (hit & !(t - error).gt(F::splat(self.nearest.end))).bits();
         if bits == 0 {
             return;
         }
-        let mut ts = [0.0; BLOCK];
+        let (mut ts, mut errors) = ([0.0; BLOCK], [0.0; BLOCK]);
         t.store(&mut ts);
+        error.store(&mut errors);
         while bits != 0 {
             let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            self.offer(ts[lane], ids[lane]);
+            self.offer::<ANY>(ts[lane], errors[lane], spot(lane));
         }
     }
 }
@@ -142,7 +179,8 @@ pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
     t_max: f32,
     counts: &mut Counts,
 ) -> (f32, u32) {
-    let mut nearest = Nearest { t: t_max, id: NOTHING };
+    let nearest = Nearest { t: t_max, error: 0.0, spot: Spot::NOTHING, end: t_max };
+    let mut target = Target { hierarchy, ray, nearest };
     let slabs: Slabs<F::Node> = ray.slabs();
     let mut stack = [(Child::EMPTY, 0.0_f32); STACK];
     stack[0] = (Child::inner(0), 0.0);
@@ -150,47 +188,30 @@ pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
     while waiting > 0 {
         waiting -= 1;
         let (child, enters) = stack[waiting];
-        if enters > nearest.t {
+        if enters > target.nearest.end {
             continue;
         }
         let Some(place) = Hierarchy::place(child) else { continue };
         match place {
             Place::Node(index) => {
                 let node = &hierarchy.nodes[index];
-                waiting = push_children::<F>(node, ray, &slabs, nearest.t, &mut stack, waiting, counts);
+                waiting =
+                    push_children::<F>(node, ray, &slabs, target.nearest.end, &mut stack, waiting, counts);
                 continue;
             }
-            Place::Triangles(index) => {
-                test_triangles::<F::Block, DEPARTING>(
-                    &hierarchy.triangles[index],
-                    ray,
-                    &mut nearest,
-                    hierarchy,
-                    ANY,
-                );
-                counts.triangles.add(F::Block::WIDTH, BLOCK.min(F::Block::WIDTH));
-            }
-            Place::Spheres(index) => {
-                test_spheres::<F::Block, DEPARTING>(
-                    &hierarchy.spheres[index],
-                    ray,
-                    &mut nearest,
-                    hierarchy,
-                    ANY,
-                );
-                counts.spheres.add(F::Block::WIDTH, BLOCK.min(F::Block::WIDTH));
-            }
+            Place::Triangles(block) => target.test_triangles::<F::Block, DEPARTING, ANY>(block, counts),
+            Place::Spheres(block) => target.test_spheres::<F::Block, DEPARTING, ANY>(block, counts),
             Place::Polygons(first, count) => {
-                for face in &hierarchy.polygons[first..first + count] {
-                    test_polygon::<F::Node, DEPARTING>(hierarchy, face, ray, &mut nearest, counts, ANY);
+                for index in first..first + count {
+                    target.test_polygon::<F::Node, DEPARTING, ANY>(index, counts);
                 }
             }
         }
-        if ANY && nearest.id != NOTHING {
-            return (DEAD, nearest.id);
+        if ANY && target.nearest.spot != Spot::NOTHING {
+            return (DEAD, super::NOTHING);
         }
     }
-    (nearest.t, nearest.id)
+    (target.nearest.t, target.nearest.spot.id(hierarchy))
 }
 
 /// Puts the children that the ray meets on the stack, the nearest on top.
@@ -237,114 +258,87 @@ fn push_children<F: Single>(
     waiting
 }
 
-#[inline(always)]
-fn test_triangles<F: Single, const DEPARTING: bool>(
-    block: &TriangleBlock,
-    ray: &Ray,
-    nearest: &mut Nearest,
-    hierarchy: &Hierarchy,
-    any: bool,
-) {
-    let space = ray.space::<F>();
-    for lane in (0..BLOCK).step_by(F::WIDTH) {
-        let vertices =
-            [0, 1, 2].map(|vertex| ray.axes.map(|axis| F::load(&block.vertices[vertex][axis][lane..])));
-        let ids = F::load_ids(&block.ids[lane..]);
-        let slack = F::load(&block.slack[lane..]);
-        let (t, hit) = candidate::triangle::<F, DEPARTING>(&space, vertices, slack, ray.start(ids));
-        offer_block(nearest, (t, hit), &block.ids[lane..], hierarchy, any);
-    }
-}
-
-#[inline(always)]
-fn test_spheres<F: Single, const DEPARTING: bool>(
-    block: &SphereBlock,
-    ray: &Ray,
-    nearest: &mut Nearest,
-    hierarchy: &Hierarchy,
-    any: bool,
-) {
-    let line = ray.line::<F>();
-    for lane in (0..BLOCK).step_by(F::WIDTH) {
-        let [x, y, z] = [0, 1, 2].map(|axis| F::load(&block.centers[axis][lane..]));
-        let radius_squared = F::load(&block.radii_squared[lane..]);
-        let ids = F::load_ids(&block.ids[lane..]);
-        let slack = F::load(&block.slack[lane..]);
-        let center = Vector::new(x, y, z);
-        let candidate =
-            candidate::sphere::<F, DEPARTING>(&line, center, radius_squared, slack, ray.start(ids));
-        offer_block(nearest, candidate, &block.ids[lane..], hierarchy, any);
-    }
-}
-
-/// For an occlusion query, what casts no shadow is not there.
-#[inline(always)]
-fn offer_block<F: Single>(
-    nearest: &mut Nearest,
-    (t, hit): (F, F::Mask),
-    ids: &[u32],
-    hierarchy: &Hierarchy,
-    any: bool,
-) {
-    if any && !hierarchy.shadowless.is_empty() {
-        let hides: [bool; BLOCK] =
-            std::array::from_fn(|lane| ids.get(lane).is_some_and(|&id| hierarchy.casts_shadow(id)));
-        let mut bits = hit.bits();
-        let mut ts = [0.0; BLOCK];
-        t.store(&mut ts);
-        while bits != 0 {
-            let lane = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            if hides[lane] {
-                nearest.offer(ts[lane], ids[lane]);
-            }
+impl Target<'_> {
+    #[inline(always)]
+    fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        index: usize,
+        counts: &mut Counts,
+    ) {
+        let ray = self.ray;
+        let block = &self.hierarchy.triangles[index];
+        let (space, padding) = (ray.space::<F>(), F::splat(ray.padding));
+        for first in (0..BLOCK).step_by(F::WIDTH) {
+            let vertices =
+                [0, 1, 2].map(|vertex| ray.axes.map(|axis| F::load(&block.vertices[vertex][axis][first..])));
+            let start = ray.start(F::load_ids(&block.ids[first..]));
+            let sizes = [F::load(&block.slack[first..]), F::load(&block.double_area[first..])];
+            let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
+            counts.triangles.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
+            self.offer_lanes::<F, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));
         }
-    } else {
-        nearest.offer_lanes((t, hit), ids);
+    }
+
+    #[inline(always)]
+    fn test_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        index: usize,
+        counts: &mut Counts,
+    ) {
+        let ray = self.ray;
+        let block = &self.hierarchy.spheres[index];
+        let (line, padding) = (ray.line::<F>(), F::splat(ray.padding));
+        for first in (0..BLOCK).step_by(F::WIDTH) {
+            let [x, y, z] = [0, 1, 2].map(|axis| F::load(&block.centers[axis][first..]));
+            let start = ray.start(F::load_ids(&block.ids[first..]));
+            let sizes = [F::load(&block.radii[first..]), F::load(&block.slack[first..])];
+            let center = Vector::new(x, y, z);
+            let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
+            counts.spheres.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
+            self.offer_lanes::<F, ANY>(&candidate, |lane| Spot::sphere(index, first + lane));
+        }
+    }
+
+    /// The edges of one polygon in lanes; at the end there is one answer.
+    #[inline(always)]
+    fn test_polygon<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        index: usize,
+        counts: &mut Counts,
+    ) {
+        let (ray, hierarchy) = (self.ray, self.hierarchy);
+        let face = &hierarchy.polygons[index];
+        let space = ray.space::<F>();
+        let mut outline = Outline::<F>::new();
+        let first = face.first_corner as usize;
+        let edges = face.edges as usize;
+        let zero = F::splat(0.0);
+        let corners = |from: usize| space.see(ray.axes.map(|axis| F::load(&hierarchy.corners[axis][from..])));
+        for edge in (first..first + edges).step_by(F::WIDTH) {
+            // Beyond the last edge there are edges from the first corner to itself, which nothing crosses.
+            outline.add_edge(&corners(edge), &corners(edge + 1), zero);
+            counts.polygons.add(F::WIDTH, (first + edges - edge).min(F::WIDTH));
+        }
+        if outline.odd.bits().count_ones() % 2 == 0 {
+            return;
+        }
+        let outline = Outline {
+            odd: true,
+            least_z: fold(outline.least_z, Lanes::min),
+            largest_z: fold(outline.largest_z, Lanes::max),
+        };
+        let view = View { space: ray.space::<f32>(), line: ray.line::<f32>(), padding: ray.padding };
+        let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
+        let start = ray.start::<f32>(face.id);
+        let candidate = candidate::polygon::<f32, DEPARTING>(&view, plane, &outline, face.slack, start);
+        self.offer_lanes::<f32, ANY>(&candidate, |_| Spot::polygon(index));
     }
 }
 
-/// The edges of one polygon in lanes; at the end there is one answer.
+/// Lanes of a block that hold a primitive; those that do come first.
 #[inline(always)]
-fn test_polygon<F: Single, const DEPARTING: bool>(
-    hierarchy: &Hierarchy,
-    face: &PolygonFace,
-    ray: &Ray,
-    nearest: &mut Nearest,
-    counts: &mut Counts,
-    any: bool,
-) {
-    if any && !hierarchy.casts_shadow(face.id) {
-        return;
-    }
-    let space = ray.space::<F>();
-    let mut outline = Outline::<F>::new();
-    let first = face.first_corner as usize;
-    let edges = face.edges as usize;
-    let zero = F::splat(0.0);
-    let corners = |from: usize| space.see(ray.axes.map(|axis| F::load(&hierarchy.corners[axis][from..])));
-    for edge in (first..first + edges).step_by(F::WIDTH) {
-        // Beyond the last edge there are edges from the first corner to itself, which nothing crosses.
-        outline.add_edge(&corners(edge), &corners(edge + 1), zero);
-        counts.polygons.add(F::WIDTH, (first + edges - edge).min(F::WIDTH));
-    }
-    let is_odd = outline.odd.bits().count_ones() % 2 == 1;
-    if !is_odd {
-        return;
-    }
-    let outline = Outline {
-        odd: true,
-        least_z: fold(outline.least_z, Lanes::min),
-        largest_z: fold(outline.largest_z, Lanes::max),
-    };
-    let line = ray.line::<f32>();
-    let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
-    let start = ray.start::<f32>(face.id);
-    let (t, hit) =
-        candidate::polygon::<f32, DEPARTING>(&line, ray.t_per_z, plane, &outline, face.slack, start);
-    if hit {
-        nearest.offer(t, face.id);
-    }
+fn in_use(ids: &[u32], width: usize) -> usize {
+    ids[..width].iter().map(|&id| usize::from(id != super::NOTHING)).sum()
 }
 
 /// The least or the largest of all lanes: the same in any order, unlike a sum.

@@ -274,7 +274,7 @@ fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitR
     let mut columns = [[0.0; 8]; 3];
     for lane in 0..D::WIDTH {
         let row = chunk[lane.min(chunk.len() - 1)];
-        let normal = prepared.polygon_normals[row.index as usize].to_array();
+        let normal = prepared.hierarchy.polygon_normals[row.index as usize].to_array();
         for (column, component) in columns.iter_mut().zip(normal) {
             column[lane] = component;
         }

@@ -1,0 +1,186 @@
+//! Which of two hits is the nearer, where f32 cannot tell.
+//!
+//! A kernel's t comes with a bound on its error. Hits whose t lie farther apart than their errors are in the order of
+//! their t; for the others t is computed again in f64. So the nearest hit is the nearest in f64, in whatever order
+//! primitives are visited. Of surfaces that coincide each rounds its own t: those that agree to 32 bits are at one t, and
+//! the smallest id is seen.
+
+use crate::kernel::UNIT_ROUNDOFF;
+use crate::prepare::{BLOCK, Hierarchy};
+use glam::DVec3;
+
+/// Where a primitive lies in the hierarchy, in a word: the kind in the 2 low bits, the lane in the next 2, the block or
+/// polygon above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Spot(pub(super) u32);
+
+const SPHERE: u32 = 0;
+const TRIANGLE: u32 = 1;
+const POLYGON: u32 = 2;
+
+const _: () = assert!(BLOCK <= 4);
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "blocks and polygons are numbered below 2²⁸, lanes below 4"
+)]
+impl Spot {
+    /// None.
+    pub(super) const NOTHING: Self = Self(super::NOTHING);
+
+    #[inline(always)]
+    pub(super) fn sphere(block: usize, lane: usize) -> Self {
+        Self((block as u32) << 4 | (lane as u32) << 2 | SPHERE)
+    }
+
+    #[inline(always)]
+    pub(super) fn triangle(block: usize, lane: usize) -> Self {
+        Self((block as u32) << 4 | (lane as u32) << 2 | TRIANGLE)
+    }
+
+    #[inline(always)]
+    pub(super) fn polygon(index: usize) -> Self {
+        Self((index as u32) << 4 | POLYGON)
+    }
+
+    /// The id of the primitive there.
+    #[inline(always)]
+    pub(super) fn id(self, hierarchy: &Hierarchy) -> u32 {
+        if self == Self::NOTHING {
+            return super::NOTHING;
+        }
+        let (index, lane) = self.place();
+        match self.0 & 3 {
+            SPHERE => hierarchy.spheres[index].ids[lane],
+            TRIANGLE => hierarchy.triangles[index].ids[lane],
+            _ => hierarchy.polygons[index].id,
+        }
+    }
+
+    #[inline(always)]
+    fn place(self) -> (usize, usize) {
+        ((self.0 >> 4) as usize, (self.0 >> 2 & 3) as usize)
+    }
+}
+
+/// A ray in f64.
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    origin: DVec3,
+    direction: DVec3,
+    departure: u32,
+}
+
+/// A hit in f64.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Hit {
+    t: f64,
+    /// Of the angle between the ray and the normal.
+    cosine: f64,
+}
+
+/// Seen more nearly edge-on than this, a surface that a light lies on is a line.
+const LEAST_COSINE: f64 = 1.0 / (1 << 12) as f64;
+
+impl Line {
+    pub(super) fn new(origin: [f32; 3], direction: [f32; 3], departure: u32) -> Self {
+        let [origin, direction] = [origin, direction].map(|vector| DVec3::from(vector.map(f64::from)));
+        Self { origin, direction, departure }
+    }
+
+    /// Whether the first of two hits is the one to be seen. Each is a place and the t that the kernel found.
+    #[cold]
+    pub(super) fn is_nearer(&self, hierarchy: &Hierarchy, new: (Spot, f32), old: (Spot, f32)) -> bool {
+        let key = |(spot, t): (Spot, f32)| {
+            (to_32_bits(self.hit(hierarchy, spot, f64::from(t)).t), spot.id(hierarchy))
+        };
+        let ((new_t, new_id), (old_t, old_id)) = (key(new), key(old));
+        new_t < old_t || (new_t == old_t && new_id < old_id)
+    }
+
+    /// Whether a hit is before the end of the segment to a light at `t_max`, which is 1 or infinite. The segment's direction
+    /// was rounded to f32, so a surface that the light lies on is met at 1 give or take that.
+    #[cold]
+    pub(super) fn is_before_light(&self, hierarchy: &Hierarchy, spot: Spot, t: f32, t_max: f32) -> bool {
+        if t_max == f32::INFINITY {
+            return true;
+        }
+        let hit = self.hit(hierarchy, spot, f64::from(t));
+        let rounding = 2.0 * f64::from(UNIT_ROUNDOFF) / hit.cosine.max(LEAST_COSINE);
+        hit.t < f64::from(t_max) - rounding
+    }
+
+    fn hit(&self, hierarchy: &Hierarchy, spot: Spot, t: f64) -> Hit {
+        let (index, lane) = spot.place();
+        let point = |columns: [f32; 3]| DVec3::from(columns.map(f64::from));
+        match spot.0 & 3 {
+            SPHERE => {
+                let block = &hierarchy.spheres[index];
+                let is_own = self.departure >> 1 == block.ids[lane];
+                self.sphere(
+                    point(block.centers.map(|column| column[lane])),
+                    f64::from(block.radii[lane]),
+                    t,
+                    is_own,
+                )
+            }
+            TRIANGLE => {
+                let block = &hierarchy.triangles[index];
+                self.triangle(block.vertices.map(|vertex| point(vertex.map(|column| column[lane]))))
+            }
+            _ => {
+                let face = &hierarchy.polygons[index];
+                let corners = face.first_corner as usize..(face.first_corner + face.edges) as usize;
+                let corners =
+                    corners.map(|corner| point([0, 1, 2].map(|axis| hierarchy.corners[axis][corner])));
+                self.polygon(hierarchy.polygon_normals[face.source as usize], corners)
+            }
+        }
+    }
+
+    /// The root of the quadratic that is next to t; see `kernel::sphere`.
+    fn sphere(&self, center: DVec3, radius: f64, t: f64, is_own: bool) -> Hit {
+        let from_center = self.origin - center;
+        let a = self.direction.length_squared();
+        let closest_t = -from_center.dot(self.direction) / a;
+        let closest = from_center + closest_t * self.direction;
+        let half_squared = radius * radius - closest.length_squared();
+        let half_t = if half_squared > 0.0 { (half_squared / a).sqrt() } else { 0.0 };
+        let (near, far) = (closest_t - half_t, closest_t + half_t);
+        let root = if (near - t).abs() <= (far - t).abs() { near } else { far };
+        let t = if is_own { closest_t + closest_t } else { root };
+        Hit { t, cosine: half_t * a.sqrt() / radius }
+    }
+
+    /// Where the line meets the plane, kept between its vertices for a plane seen edge-on.
+    fn triangle(&self, vertices: [DVec3; 3]) -> Hit {
+        let [a, b, c] = vertices;
+        let normal = (b - a).cross(c - a);
+        self.plane(a, normal, normal.length(), vertices.into_iter())
+    }
+
+    fn polygon(&self, normal: DVec3, corners: impl Iterator<Item = DVec3> + Clone) -> Hit {
+        let first = corners.clone().next().unwrap_or(DVec3::ZERO);
+        self.plane(first, normal, 1.0, corners)
+    }
+
+    fn plane(&self, point: DVec3, normal: DVec3, length: f64, corners: impl Iterator<Item = DVec3>) -> Hit {
+        let third = self.direction.abs().max_position();
+        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for corner in corners {
+            let t = (corner[third] - self.origin[third]) / self.direction[third];
+            (least, largest) = (if t < least { t } else { least }, if t > largest { t } else { largest });
+        }
+        let slope = normal.dot(self.direction);
+        let t = normal.dot(point - self.origin) / slope;
+        let t = if t >= least { t } else { least };
+        let t = if t <= largest { t } else { largest };
+        Hit { t, cosine: slope.abs() / (length * self.direction.length()) }
+    }
+}
+
+/// Rounded to 32 significant bits: far finer than f32, and far coarser than the rounding of f64.
+fn to_32_bits(t: f64) -> f64 {
+    const DROPPED: u32 = 53 - 32;
+    f64::from_bits((t.to_bits() + (1 << (DROPPED - 1))) >> DROPPED << DROPPED)
+}
