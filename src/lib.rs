@@ -46,5 +46,5 @@ pub mod render;
 pub mod scene;
 mod signature;
 mod traverse;
-mod wavefront;
+pub mod wavefront;
 mod whole_file;

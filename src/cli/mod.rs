@@ -2,6 +2,7 @@
 
 mod check;
 mod diff;
+mod explain;
 mod failure;
 mod interrupt;
 mod output;
@@ -29,6 +30,8 @@ enum Command {
     Render(render::Arguments),
     /// Read and validate a scene file, and render nothing
     Check(check::Arguments),
+    /// Say what a scene needs and so what will run: stages, kernels, queues and their bytes
+    Explain(explain::Arguments),
     /// Compare two pictures of the same size
     Diff(diff::Arguments),
 }
@@ -68,6 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
     };
     match result {

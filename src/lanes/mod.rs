@@ -102,8 +102,6 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
     fn store_ids(ids: Self::Ids, to: &mut [u32]);
     fn select_ids(mask: Self::Mask, then: Self::Ids, otherwise: Self::Ids) -> Self::Ids;
     fn ids_eq(a: Self::Ids, b: Self::Ids) -> Self::Mask;
-    /// For ids below 2³¹, or u32::MAX, which counts as below all of them.
-    fn ids_lt(a: Self::Ids, b: Self::Ids) -> Self::Mask;
     /// Lanes whose id has its lowest bit set.
     fn ids_odd(ids: Self::Ids) -> Self::Mask;
     /// All ids without their lowest bit, halved.

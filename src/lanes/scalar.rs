@@ -109,11 +109,6 @@ impl Single for f32 {
     }
 
     #[inline(always)]
-    fn ids_lt(a: u32, b: u32) -> bool {
-        a.cast_signed() < b.cast_signed()
-    }
-
-    #[inline(always)]
     fn ids_odd(ids: u32) -> bool {
         ids & 1 == 1
     }

@@ -66,11 +66,6 @@ impl<L: Lanes> Vector<L> {
             z: L::select(mask, then.z, otherwise.z),
         }
     }
-
-    #[inline(always)]
-    pub(crate) fn max_component(self) -> L {
-        self.x.max(self.y).max(self.z)
-    }
 }
 
 impl<L: Lanes> Add for Vector<L> {

@@ -80,7 +80,7 @@ macro_rules! many_lanes {
                     *lane = <$scalar>::from(number);
                 }
                 // Counts are small, and above the width they are all the same.
-                #[expect(
+                #[allow(
                     clippy::cast_lossless,
                     clippy::cast_possible_truncation,
                     reason = "at most the width"
@@ -140,11 +140,6 @@ macro_rules! many_singles {
             #[inline(always)]
             fn ids_eq(a: $ids, b: $ids) -> Self {
                 bytemuck::cast(a.simd_eq(b))
-            }
-
-            #[inline(always)]
-            fn ids_lt(a: $ids, b: $ids) -> Self {
-                bytemuck::cast(a.simd_lt(b))
             }
 
             #[inline(always)]

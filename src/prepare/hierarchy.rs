@@ -43,19 +43,15 @@ pub(crate) enum Place {
 }
 
 /// What the steps of a traversal cost, in visits of a node; measured with one ray at a time.
-const COSTS: Costs = Costs {
-    node: 1.0,
-    block: [0.8, 0.9, 0.9],
-    room: [BLOCK as f32, BLOCK as f32, 8.0],
-    largest_leaf: BLOCK as u32,
-};
+const COSTS: Costs =
+    Costs { node: 1.0, block: [0.8, 0.9, 0.9], room: [BLOCK as f32, BLOCK as f32, 8.0], largest_leaf: 4 };
 
 /// Lanes may read so far beyond a polygon's last corner.
 const CORNERS_BEYOND: usize = 16;
 
 /// Polygons of a leaf are at most [`BLOCK`]; their count fits beside the index of the first.
 const COUNT_BITS: u32 = 2;
-const _: () = assert!(BLOCK <= 1 << COUNT_BITS);
+const _: () = assert!(BLOCK == COSTS.largest_leaf as usize && BLOCK <= 1 << COUNT_BITS);
 
 impl Hierarchy {
     pub(super) fn new(scene: &Scene, scale: Scale) -> Self {

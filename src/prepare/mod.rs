@@ -12,7 +12,7 @@ mod plan;
 mod scale;
 mod view;
 
-pub(crate) use blocks::{BLOCK, PolygonFace, SphereBlock, TriangleBlock};
+pub(crate) use blocks::BLOCK;
 pub(crate) use directory::{Directory, material_of};
 pub(crate) use hierarchy::{Hierarchy, Place};
 pub use plan::Plan;

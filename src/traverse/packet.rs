@@ -115,8 +115,8 @@ impl Packet {
         let direction = rays.direction.map(|column| &column[run.clone()]);
         let Some((axes, backwards)) = common_order::<F>(direction) else { return false };
         (self.axes, self.backwards, self.count) = (axes, backwards, count);
-        for axis in 0..3 {
-            self.direction[axis].copy_from_slice(direction[axis]);
+        for (axis, direction) in direction.into_iter().enumerate() {
+            self.direction[axis].copy_from_slice(direction);
             self.origin[axis].copy_from_slice(&rays.origin[axis][run.clone()]);
         }
         for slope in 0..2 {

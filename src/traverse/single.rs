@@ -319,7 +319,7 @@ impl Target<'_> {
             outline.add_edge(&corners(edge), &corners(edge + 1), zero);
             counts.polygons.add(F::WIDTH, (first + edges - edge).min(F::WIDTH));
         }
-        if outline.odd.bits().count_ones() % 2 == 0 {
+        if outline.odd.bits().count_ones().is_multiple_of(2) {
             return;
         }
         let outline = Outline {

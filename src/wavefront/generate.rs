@@ -3,7 +3,7 @@
 use super::queue::RayQueue;
 use super::tiles::Sample;
 use crate::film::SamplePattern;
-use crate::lanes::{Double, Lanes, Vector};
+use crate::lanes::{Double, Vector};
 use crate::prepare::View;
 use crate::traverse::LaneUse;
 

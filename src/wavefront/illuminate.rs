@@ -5,7 +5,7 @@ use super::elementary::pow;
 use super::queue::{NormalQueue, PendingQueue, PendingRecord, ShadowQueue, ShadowRecord, SurfaceQueue};
 use super::statistics::Work;
 use super::surface::SurfaceLanes;
-use crate::lanes::{Double, Lanes, Mask, Vector};
+use crate::lanes::{Double, Mask, Vector};
 use crate::prepare::Prepared;
 use crate::scene::{Light, Material, Rgb};
 

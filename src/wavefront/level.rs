@@ -1,8 +1,8 @@
 //! The queues of one depth.
 
 use super::queue::{
-    AttenuationQueue, ChildQueue, DepartureQueue, NodeQueue, PendingQueue, RadianceQueue, RayQueue,
-    TrailQueue,
+    AttenuationQueue, ChildQueue, DepartureQueue, NodeQueue, PendingQueue, QueuePlan, RadianceQueue,
+    RayQueue, TrailQueue,
 };
 use crate::prepare::Plan;
 
@@ -56,15 +56,21 @@ impl Level {
         self.departures.clear();
     }
 
+    pub(super) fn queues(&self) -> [QueuePlan; 9] {
+        [
+            self.rays.plan(),
+            self.departures.plan(),
+            self.radiance.plan(),
+            self.pending.plan(),
+            self.attenuations.plan(),
+            self.reflected.plan(),
+            self.refracted.plan(),
+            self.nodes.plan(),
+            self.trails.plan(),
+        ]
+    }
+
     pub(super) fn bytes(&self) -> usize {
-        self.rays.bytes()
-            + self.departures.bytes()
-            + self.radiance.bytes()
-            + self.pending.bytes()
-            + self.attenuations.bytes()
-            + self.reflected.bytes()
-            + self.refracted.bytes()
-            + self.nodes.bytes()
-            + self.trails.bytes()
+        self.queues().iter().map(|queue| queue.bytes).sum()
     }
 }

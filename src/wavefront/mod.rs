@@ -20,6 +20,7 @@
 mod absorb;
 mod column;
 mod elementary;
+mod explain;
 mod generate;
 mod illuminate;
 mod level;
@@ -33,7 +34,8 @@ mod tiles;
 mod trail;
 mod worker;
 
-pub use queue::ColumnPlan;
+pub use explain::{Explanation, HierarchyPlan, StagePlan};
+pub use queue::{ColumnPlan, QueuePlan};
 pub(crate) use statistics::{Stage, Statistics};
 pub use trail::PixelRecord;
 pub use worker::DEFAULT_BATCH;

@@ -20,6 +20,19 @@ pub struct ColumnPlan {
     pub bytes: usize,
 }
 
+/// A queue as `explain` shows it.
+#[derive(Clone, Debug, Serialize)]
+pub struct QueuePlan {
+    /// Its name.
+    pub name: &'static str,
+    /// Rows that it has room for; 0 where the scene does not need it.
+    pub rows: usize,
+    /// Memory.
+    pub bytes: usize,
+    /// What its rows are made of.
+    pub columns: &'static [ColumnPlan],
+}
+
 macro_rules! queue {
     (
         $(#[doc = $queue_doc:literal])+
@@ -30,6 +43,7 @@ macro_rules! queue {
         $(#[doc = $queue_doc])+
         pub(crate) struct $queue {
             $($(#[doc = $doc])+ pub(crate) $field: <$type as Field>::Columns,)+
+            #[allow(dead_code, reason = "not of queues that lie row by row beside another")]
             len: usize,
             capacity: usize,
         }
@@ -40,6 +54,7 @@ macro_rules! queue {
             $($(#[doc = $doc])+ pub(crate) $field: $type,)+
         }
 
+        #[allow(dead_code, reason = "a queue has them all, and its stages use some")]
         impl $queue {
             pub(crate) const COLUMNS: &[ColumnPlan] = &[$(ColumnPlan {
                 name: stringify!($field),
@@ -85,12 +100,15 @@ macro_rules! queue {
                 $(record.$field.put(&mut self.$field, row);)+
             }
 
-            #[cfg_attr(not(test), expect(dead_code, reason = "stages read columns; tests read records"))]
             pub(crate) fn get(&self, row: usize) -> $record {
                 $record { $($field: <$type as Field>::get(&self.$field, row),)+ }
             }
 
-            pub(crate) fn bytes(&self) -> usize {
+            pub(crate) fn plan(&self) -> QueuePlan {
+                QueuePlan { name: stringify!($queue), rows: self.capacity, bytes: self.bytes(), columns: Self::COLUMNS }
+            }
+
+            fn bytes(&self) -> usize {
                 0 $(+ <$type as Field>::bytes(&self.$field))+
             }
         }

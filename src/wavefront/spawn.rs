@@ -221,14 +221,14 @@ impl Spawning<'_> {
         let ray = self.surfaces.ray[row] as usize;
         let mut weight = share;
         let mut largest = 0.0;
-        for channel in 0..3 {
+        for (channel, weight) in weight.iter_mut().enumerate() {
             if !is_primary {
-                weight[channel] *= self.level.departures.weight[channel][ray];
+                *weight *= self.level.departures.weight[channel][ray];
             }
             if prepared.plan.absorption {
-                weight[channel] *= self.level.attenuations.attenuation[channel][row];
+                *weight *= self.level.attenuations.attenuation[channel][row];
             }
-            largest = Lanes::max(weight[channel], largest);
+            largest = Lanes::max(*weight, largest);
         }
         let is_worth_tracing = largest > 0.0 && largest >= prepared.plan.min_weight;
         let child = if is_worth_tracing {

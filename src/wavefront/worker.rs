@@ -4,7 +4,7 @@ use super::absorb::absorb;
 use super::generate::generate;
 use super::illuminate;
 use super::level::Level;
-use super::queue::{HitQueue, NormalQueue, RefractionQueue, ShadowQueue, SurfaceQueue};
+use super::queue::{HitQueue, NormalQueue, QueuePlan, RefractionQueue, ShadowQueue, SurfaceQueue};
 use super::resolve::{add_to_pixels, resolve};
 use super::spawn::{Spawning, spawn};
 use super::statistics::{Stage, Statistics};
@@ -27,7 +27,7 @@ pub(crate) struct TileGrid {
 
 impl TileGrid {
     pub(crate) fn new(region: Region, prepared: &Prepared<'_>, batch: usize) -> Self {
-        Self { tiles: Tiles::new(region, prepared.plan.samples, batch) }
+        Self { tiles: Tiles::new(region, prepared.scene.image.height, prepared.plan.samples, batch) }
     }
 
     pub(crate) fn count(&self) -> u64 {
@@ -87,13 +87,14 @@ impl Scratch {
         }
     }
 
-    fn bytes(&self) -> usize {
-        self.hits.bytes()
-            + self.sorted.bytes()
-            + self.surfaces.bytes()
-            + self.normals.bytes()
-            + self.shadows.bytes()
-            + self.refractions.bytes()
+    fn queues(&self) -> [QueuePlan; 5] {
+        [
+            self.hits.plan(),
+            self.surfaces.plan(),
+            self.normals.plan(),
+            self.shadows.plan(),
+            self.refractions.plan(),
+        ]
     }
 }
 
@@ -120,11 +121,12 @@ impl<'a> Worker<'a> {
         let pixels = tile.width() as usize * tile.height() as usize;
         let mut sums = vec![[0.0; 3]; pixels];
         let mut records = vec![PixelRecord::NONE; if self.records { pixels } else { 0 }];
-        let mut samples =
-            grid.tiles.samples(tile, self.prepared.scene.image.height, samples_per_pixel).peekable();
-        while samples.peek().is_some() && !self.stop.load(Ordering::Relaxed) {
-            self.samples.clear();
-            self.samples.extend(samples.by_ref().take(self.batch));
+        let mut samples = grid.tiles.samples(tile);
+        loop {
+            samples.fill(&mut self.samples, self.batch);
+            if self.samples.is_empty() || self.stop.load(Ordering::Relaxed) {
+                break;
+            }
             self.batch::<F>(&mut sums, &mut records);
         }
         let count = f64::from(samples_per_pixel);
@@ -306,10 +308,16 @@ impl<'a> Worker<'a> {
         }
     }
 
+    /// The queues that all depths share.
+    pub(super) fn shared_queues(&self) -> [QueuePlan; 5] {
+        self.scratch.queues()
+    }
+
     /// Memory of all queues.
     pub(crate) fn bytes(&self) -> usize {
         let samples = self.samples.capacity() * size_of::<Sample>();
-        samples + self.scratch.bytes() + self.levels.iter().map(Level::bytes).sum::<usize>()
+        let shared: usize = self.shared_queues().iter().map(|queue| queue.bytes).sum();
+        samples + self.scratch.sorted.bytes() + shared + self.levels.iter().map(Level::bytes).sum::<usize>()
     }
 }
 

@@ -19,7 +19,6 @@ mod tests;
 
 pub(crate) use bounds::Bounds;
 pub(crate) use cost::Costs;
-#[cfg_attr(not(test), expect(unused_imports, reason = "the report on a scene follows"))]
 pub(crate) use cost::sah_cost;
 pub(crate) use node::{Child, Leaf, Node, Unpacked, WIDTH};
 
