@@ -5,7 +5,6 @@ use crate::lanes::Lanes;
 
 /// Where a ray meets the plane of a triangle, and whether that is inside.
 pub(crate) struct Meeting<L: Lanes> {
-    pub(crate) t: L,
     /// Edges and corners count as inside.
     pub(crate) inside: L::Mask,
     /// Distance of the ray's origin from the plane, times twice the triangle's area; of either sign.
@@ -30,5 +29,13 @@ pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) 
     let one_sided = least.ge(zero) | largest.le(zero);
     // Seen edge-on there is no area, and t is not a number.
     let inside = one_sided & !area.eq(zero);
-    Meeting { t: volume * ray.t_per_z / area, inside, volume, seen_double_area: area }
+    Meeting { inside, volume, seen_double_area: area }
+}
+
+impl<L: Lanes> Meeting<L> {
+    /// Divides: for those that are inside.
+    #[inline(always)]
+    pub(crate) fn t(&self, ray: &RaySpace<L>) -> L {
+        self.volume * ray.t_per_z / self.seen_double_area
+    }
 }

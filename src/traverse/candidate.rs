@@ -9,7 +9,7 @@ use crate::kernel::RaySpace;
 use crate::kernel::polygon::{self, Outline};
 use crate::kernel::sphere::{self, Line};
 use crate::kernel::triangle;
-use crate::lanes::{Single, Vector};
+use crate::lanes::{Mask, Single, Vector};
 
 /// Where a ray starts.
 #[derive(Clone, Copy)]
@@ -48,11 +48,15 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
 ) -> Candidate<F> {
     let zero = F::splat(0.0);
     let meeting = triangle::meet(space, vertices, zero);
-    let hit = meeting.inside & meeting.t.gt(zero);
+    if !meeting.inside.any() {
+        return Candidate { t: zero, error: zero, hit: meeting.inside };
+    }
+    let t = meeting.t(space);
+    let hit = meeting.inside & t.gt(zero);
     let hit = if DEPARTING { hit & meeting.volume.abs().gt(slack) & !start.own } else { hit };
     // cos θ·|d| = |seen area·d_z| / area.
     let error = padding * double_area * (space.t_per_z / meeting.seen_double_area).abs();
-    Candidate { t: meeting.t, error, hit }
+    Candidate { t, error, hit }
 }
 
 #[inline(always)]
@@ -65,6 +69,9 @@ pub(super) fn sphere<F: Single, const DEPARTING: bool>(
 ) -> Candidate<F> {
     let zero = F::splat(0.0);
     let meeting = sphere::meet(line, center, radius * radius, zero);
+    if !(meeting.meets | start.own).any() {
+        return Candidate { t: zero, error: zero, hit: meeting.meets };
+    }
     // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
     let error = (padding + padding) * radius / (meeting.half_t * line.a);
     if !DEPARTING {

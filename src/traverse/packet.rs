@@ -67,14 +67,17 @@ struct Hull {
 /// A child that waits: where its box is, what it leads to, the first group of rays that may meet it, and a t that none
 /// enters it before.
 #[derive(Clone, Copy)]
-struct Waiting {
+pub(super) struct Waiting {
     node: u32,
     slot: u8,
     first_group: u8,
     enters: f32,
 }
 
-const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 1;
+/// Enough for the deepest tree.
+pub(super) type Stack = [Waiting; DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
+pub(super) const EMPTY_STACK: Stack =
+    [Waiting { node: 0, slot: 0, first_group: 0, enters: 0.0 }; DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
 
 impl Packet {
     pub(super) fn new() -> Self {
@@ -196,11 +199,11 @@ impl Packet {
     pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
+        stack: &mut Stack,
         counts: &mut Counts,
     ) {
         counts.in_packets += self.count as u64;
-        let mut stack = [Waiting { node: 0, slot: 0, first_group: 0, enters: 0.0 }; STACK];
-        let mut waiting = self.push_children::<F>(hierarchy, 0, 0, &mut stack, 0, counts);
+        let mut waiting = self.push_children::<F>(hierarchy, 0, 0, stack, 0, counts);
         while waiting > 0 {
             waiting -= 1;
             let Waiting { node: parent, slot, first_group, enters } = stack[waiting];
@@ -215,7 +218,7 @@ impl Packet {
             match Hierarchy::place(child) {
                 None => {}
                 Some(Place::Node(index)) => {
-                    waiting = self.push_children::<F>(hierarchy, index, group, &mut stack, waiting, counts);
+                    waiting = self.push_children::<F>(hierarchy, index, group, stack, waiting, counts);
                 }
                 Some(leaf) => {
                     self.visit_leaf::<F, DEPARTING, ANY>(
@@ -241,7 +244,7 @@ impl Packet {
         hierarchy: &Hierarchy,
         index: usize,
         group: u8,
-        stack: &mut [Waiting; STACK],
+        stack: &mut Stack,
         bottom: usize,
         counts: &mut Counts,
     ) -> usize {
@@ -627,17 +630,22 @@ fn widened<F: Single>([least, largest]: [F; 2], by: F) -> [F; 2] {
     [by.min(least), by.max(largest)]
 }
 
-/// The least and the largest of all lanes.
+/// The least and the largest of all lanes: the same in any order, unlike a sum. By halves, since a chain of sixteen is slow.
 #[inline(always)]
 fn folded<F: Single>([least, largest]: [F; 2]) -> [f32; 2] {
     let mut array = [[0.0; 16]; 2];
     least.store(&mut array[0]);
     largest.store(&mut array[1]);
-    let [least, largest] = array;
-    [
-        least[1..F::WIDTH].iter().fold(least[0], |a, &b| Lanes::min(a, b)),
-        largest[1..F::WIDTH].iter().fold(largest[0], |a, &b| Lanes::max(a, b)),
-    ]
+    let [least, largest] = &mut array;
+    for half in [8, 4, 2, 1] {
+        if half < F::WIDTH {
+            for lane in 0..half {
+                least[lane] = Lanes::min(least[lane + half], least[lane]);
+                largest[lane] = Lanes::max(largest[lane + half], largest[lane]);
+            }
+        }
+    }
+    [least[0], largest[0]]
 }
 
 #[inline(always)]

@@ -169,20 +169,21 @@ impl Target<'_> {
     }
 }
 
-/// Children that wait, each with the t at which the ray enters it.
-const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 1;
+/// Children that wait, each with the t at which the ray enters it; enough for the deepest tree.
+pub(super) type Stack = [(Child, f32); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
+pub(super) const EMPTY_STACK: Stack = [(Child::EMPTY, 0.0); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
 
 /// The nearest hit at 0 < t < `t_max`: t and id. If ANY, whether there is one that casts a shadow: then t is [`DEAD`].
 pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     ray: &Ray,
     t_max: f32,
+    stack: &mut Stack,
     counts: &mut Counts,
 ) -> (f32, u32) {
     let nearest = Nearest { t: t_max, error: 0.0, spot: Spot::NOTHING, end: t_max };
     let mut target = Target { hierarchy, ray, nearest };
     let slabs: Slabs<F::Node> = ray.slabs();
-    let mut stack = [(Child::EMPTY, 0.0_f32); STACK];
     stack[0] = (Child::inner(0), 0.0);
     let mut waiting = 1;
     while waiting > 0 {
@@ -195,8 +196,7 @@ pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
         match place {
             Place::Node(index) => {
                 let node = &hierarchy.nodes[index];
-                waiting =
-                    push_children::<F>(node, ray, &slabs, target.nearest.end, &mut stack, waiting, counts);
+                waiting = push_children::<F>(node, ray, &slabs, target.nearest.end, stack, waiting, counts);
                 continue;
             }
             Place::Triangles(block) => target.test_triangles::<F::Block, DEPARTING, ANY>(block, counts),
@@ -221,7 +221,7 @@ fn push_children<F: Single>(
     ray: &Ray,
     slabs: &Slabs<F::Node>,
     t_max: f32,
-    stack: &mut [(Child, f32); STACK],
+    stack: &mut Stack,
     waiting: usize,
     counts: &mut Counts,
 ) -> usize {
