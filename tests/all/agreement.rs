@@ -14,7 +14,6 @@ fn agrees(path: &Path) {
     (scene.image.width, scene.image.height) = (200, 200);
     scene.render.samples = scene.render.samples.min(2);
     let found = Agreement::measure(&scene, Width::BEST).unwrap();
-    println!("{name}: {found:?}");
     assert_eq!(found.wrong_primaries, 0, "{name}: {found:?}");
 
     // Light is f32 too, where the floor rounds rays and hits alone: half a unit in its last place is no error.

@@ -110,9 +110,32 @@ fn the_command_line_goes_before_the_scene() {
 }
 
 #[test]
+fn the_report_says_what_the_wavefront_engine_did() {
+    let place = Workplace::new();
+    for (options, engine, lanes) in [
+        (&["--engine", "scalar"][..], "scalar", 1),
+        (&["--engine", "simd", "--lanes", "4"], "simd", 4),
+        (&["--lanes", "8"], "simd", 8),
+    ] {
+        let output = place.render("a.png", &[options, &["--json", "-", "--progress", "none"]].concat());
+        assert_exit(&output, 0);
+        let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!((&report["engine"], &report["lanes"]), (&engine.into(), &lanes.into()));
+        let stages = report["stages"].as_array().unwrap();
+        let intersect = stages.iter().find(|stage| stage["stage"] == "intersect").unwrap();
+        assert_eq!((&intersect["depth"], &intersect["rows"]), (&0.into(), &report["rays"]["primary"]));
+        let in_use = intersect["lanes"]["in_use"].as_f64().unwrap();
+        assert!(in_use > 0.0 && in_use <= f64::from(lanes), "{in_use} of {lanes} lanes in use");
+        assert!(report["stage_seconds"]["intersect"].as_f64().unwrap() > 0.0);
+        assert!(report["memory"]["queue_bytes_per_worker"].as_u64().unwrap() > 0);
+    }
+}
+
+#[test]
 fn the_report_says_what_ran() {
     let place = Workplace::new();
-    assert_exit(&place.render("a.png", &["--threads", "2", "--json", &place.at("report.json")]), 0);
+    let options = ["--engine", "reference", "--threads", "2", "--json", &place.at("report.json")];
+    assert_exit(&place.render("a.png", &options), 0);
     let text = std::fs::read_to_string(place.folder.file("report.json")).unwrap();
     let report: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(
@@ -147,7 +170,7 @@ fn wrong_usage_is_2_and_says_what_was_meant() {
     for (arguments, said) in [
         (vec!["--egine", "reference"], "--engine"),
         (vec!["--engine", "referense"], "reference"),
-        (vec!["--engine", "simd"], "not built yet"),
+        (vec!["--engine", "fast"], "simd"),
         (vec!["--sampling", "jitterd"], "jittered"),
         (vec!["--samples", "0"], "1..=64"),
         (vec!["--samples", "65"], "1..=64"),

@@ -16,3 +16,4 @@ mod model;
 mod real_scenes;
 mod robustness;
 mod support;
+mod wavefront;

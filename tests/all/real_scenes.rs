@@ -1,10 +1,11 @@
 //! Scenes that the project did not write: Haines' SPD and the Stanford bunny, in the folder that WAVELANE_SCENES names.
 
-use crate::support::render_whole;
+use crate::support::render_with;
 use std::io::Write;
 use std::path::PathBuf;
 use wavelane::load::load;
 use wavelane::rays::RayCounts;
+use wavelane::render::Engine;
 
 /// A file of the folder; none, said out loud, where it is absent.
 pub(crate) fn file(name: &str) -> Option<PathBuf> {
@@ -47,7 +48,7 @@ fn the_spd_scenes_render() {
             (geometry.spheres.len(), geometry.triangles.len(), geometry.polygons.len(), scene.lights.len());
         assert_eq!(counts, (spheres, triangles, polygons, lights), "{name}");
         assert_eq!((scene.image.width, scene.image.height), (512, 512), "{name}");
-        let rendered = render_whole(&scene);
+        let rendered = render_with(&scene, Engine::Reference);
         assert_eq!(rendered.rays.primary, 512 * 512, "{name}");
         let background = scene.image.background.to_array();
         let covered = rendered.image.pixels.iter().filter(|pixel| **pixel != background).count();
@@ -70,7 +71,7 @@ fn the_bunny_is_framed() {
     let mut scene = load(&path).unwrap_or_else(|error| panic!("{error}")).scene;
     (scene.image.width, scene.image.height) = (128, 128);
     assert_eq!(scene.geometry.triangles.len(), 69_451);
-    let rendered = render_whole(&scene);
+    let rendered = render_with(&scene, Engine::Reference);
     assert_eq!(rendered.rays, RayCounts { reflect: 0, refract: 0, ..rendered.rays });
     let lit = rendered.image.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
     assert!(lit > 2000, "{lit} pixels are lit");

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
 use wavelane::film::{Image, Region};
+use wavelane::lanes::Width;
 use wavelane::load::load;
+use wavelane::measure::Difference;
 use wavelane::render::{Engine, RenderOptions, Rendered, render};
 use wavelane::scene::{Light, Scene};
 
@@ -47,23 +49,58 @@ pub(crate) fn scene(toml: &str) -> Scene {
     load(&folder.write("scene.toml", toml)).unwrap_or_else(|error| panic!("{error}\nin\n{toml}")).scene
 }
 
-pub(crate) fn render_whole(scene: &Scene) -> Rendered {
-    let options = RenderOptions {
-        engine: Engine::Reference,
-        region: Region::whole(scene.image.width, scene.image.height),
-        threads: 0,
-        on_progress: &|_| {},
-        stop: &AtomicBool::new(false),
-    };
-    render(scene, &options).unwrap()
+/// The wavefront engine, in lanes of the width that it is used at.
+pub(crate) fn wavefront() -> Engine {
+    Engine::wavefront(Width::BEST)
 }
 
-/// The picture of a TOML text.
+pub(crate) fn render_with(scene: &Scene, engine: Engine) -> Rendered {
+    render_region(scene, engine, Region::whole(scene.image.width, scene.image.height), 0)
+}
+
+pub(crate) fn render_region(scene: &Scene, engine: Engine, region: Region, threads: usize) -> Rendered {
+    let stop = AtomicBool::new(false);
+    render(scene, &RenderOptions { engine, region, threads, on_progress: &|_| {}, stop: &stop }).unwrap()
+}
+
+/// Renders with the reference, and sees to it that the wavefront engine agrees: what is asserted of the one then holds of
+/// the other, but for a pixel in a thousand that may fall on the other side of an edge.
+#[track_caller]
+pub(crate) fn render_whole(scene: &Scene) -> Rendered {
+    let expected = render_with(scene, Engine::Reference);
+    let found = render_with(scene, wavefront());
+    let over = |limit: f64| Difference::between(&expected.image, &found.image, limit).unwrap();
+    let brightest = expected.image.pixels.iter().flatten().fold(1.0_f32, |a, &b| a.max(b));
+    let apart = over(1e-4 * f64::from(brightest));
+    let allowed = expected.image.pixels.len() as u64 / 1000;
+    assert!(apart.pixels_over <= allowed, "{apart:?} between the engines");
+    if apart.pixels_over == 0 {
+        let (expected, found) = (expected.rays, found.rays);
+        let close = |a: u64, b: u64| a.abs_diff(b) <= a.max(b) / 1000;
+        let agree = expected.primary == found.primary
+            && close(expected.shadow, found.shadow)
+            && close(expected.reflect, found.reflect)
+            && close(expected.refract, found.refract);
+        assert!(agree, "rays of the engines: {expected:?}, {found:?}");
+    }
+    expected
+}
+
+/// The picture of a TOML text, by the reference; the wavefront engine agrees.
+#[track_caller]
 pub(crate) fn picture(toml: &str) -> Image {
     render_whole(&scene(toml)).image
 }
 
+/// The pictures of a TOML text by both engines, for what must hold of every pixel.
+pub(crate) fn pictures(toml: &str) -> [(&'static str, Image); 2] {
+    let scene = scene(toml);
+    [("reference", Engine::Reference), ("wavefront", wavefront())]
+        .map(|(name, engine)| (name, render_with(&scene, engine).image))
+}
+
 /// The only pixel of a TOML text's picture.
+#[track_caller]
 pub(crate) fn pixel(toml: &str) -> [f32; 3] {
     let image = picture(toml);
     assert_eq!((image.width, image.height), (1, 1));
