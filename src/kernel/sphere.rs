@@ -45,14 +45,14 @@ impl<L: Lanes> Meeting<L> {
         (t, self.meets & t.gt(zero))
     }
 
-    /// The same for a ray that starts on a surface, to whose points this sphere's are equal within `slack` / r: a root
-    /// there is 0. The distance that t stands for is t·|d|·cos θ, with cos θ = half a chord / r.
+    /// Whether the ray starts nearer to the surface than `slack` / r. The distance that t stands for is t·|d|·cos θ, with
+    /// cos θ = half a chord / r.
     #[inline(always)]
-    pub(crate) fn nearest_beyond(&self, line: &Line<L>, slack: L) -> (L, L::Mask) {
+    pub(crate) fn touches(&self, line: &Line<L>, slack: L) -> L::Mask {
         let (near, far) = (self.closest_t - self.half_t, self.closest_t + self.half_t);
         let height_per_t = self.half_t * line.a;
-        let t = L::select((near * height_per_t).gt(slack), near, far);
-        (t, self.meets & (t * height_per_t).gt(slack))
+        let is_near = |t: L| !(t * height_per_t).abs().gt(slack);
+        self.meets & (is_near(near) | is_near(far))
     }
 
     /// For a ray that starts on this sphere one root is 0 and this is the other; it is there for a ray that goes inward.

@@ -7,6 +7,9 @@ use crate::lanes::Lanes;
 pub(crate) struct Meeting<L: Lanes> {
     /// Edges and corners count as inside.
     pub(crate) inside: L::Mask,
+    /// The least and the largest of the areas that the ray's foot spans with the edges.
+    least: L,
+    largest: L,
     /// Distance of the ray's origin from the plane, times twice the triangle's area; of either sign.
     pub(crate) volume: L,
     /// Twice the triangle's area as seen along the ray, sheared; of either sign.
@@ -29,10 +32,16 @@ pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) 
     let one_sided = least.ge(zero) | largest.le(zero);
     // Seen edge-on there is no area, and t is not a number.
     let inside = one_sided & !area.eq(zero);
-    Meeting { inside, volume, seen_double_area: area }
+    Meeting { inside, least, largest, volume, seen_double_area: area }
 }
 
 impl<L: Lanes> Meeting<L> {
+    /// Whether the foot is inside or not farther outside than a margin, an area.
+    #[inline(always)]
+    pub(crate) fn is_inside(&self, margin: L) -> L::Mask {
+        self.least.ge(-margin) | self.largest.le(margin)
+    }
+
     /// Divides: for those that are inside.
     #[inline(always)]
     pub(crate) fn t(&self, ray: &RaySpace<L>) -> L {

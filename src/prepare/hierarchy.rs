@@ -19,6 +19,8 @@ pub(crate) struct Hierarchy {
     pub(crate) corners: [Vec<f32>; 3],
     /// Unit, outward, of the scene's polygons in their order; in f64 for what follows a hit.
     pub(crate) polygon_normals: Vec<DVec3>,
+    /// By id in increasing order, how far the corners of the scene's polygons lie off their planes.
+    pub(crate) bends: Vec<(u32, f64)>,
     /// Largest magnitude of a coordinate.
     pub(crate) extent: f32,
     /// By id, whether a primitive lets light pass; empty where none does.
@@ -70,6 +72,7 @@ impl Hierarchy {
             polygons: Vec::new(),
             corners: Default::default(),
             polygon_normals: vec![DVec3::Z; geometry.polygons.len()],
+            bends: geometry.polygons.iter().map(|polygon| (polygon.id.0, 0.0)).collect(),
             extent,
             shadowless: shadowless(scene),
             depth: tree.depth,
@@ -111,6 +114,11 @@ impl Hierarchy {
         !self.shadowless.get(id as usize).copied().unwrap_or(false)
     }
 
+    /// How far a primitive is from the surface that is taken for it: a polygon's corners from its plane.
+    pub(crate) fn bend(&self, id: u32) -> f64 {
+        self.bends.binary_search_by_key(&id, |bend| bend.0).map_or(0.0, |index| self.bends[index].1)
+    }
+
     /// Memory of everything that a ray reads.
     pub(crate) fn bytes(&self) -> HierarchyBytes {
         HierarchyBytes {
@@ -119,6 +127,7 @@ impl Hierarchy {
             triangles: size_of_val(self.triangles.as_slice()),
             polygons: size_of_val(self.polygons.as_slice())
                 + size_of_val(self.polygon_normals.as_slice())
+                + size_of_val(self.bends.as_slice())
                 + self.corners.iter().map(|column| size_of_val(column.as_slice())).sum::<usize>(),
         }
     }
@@ -178,12 +187,15 @@ impl Hierarchy {
         // What has no plane was left out of the scene.
         let normal = polygon_normal(&wide).unwrap_or(DVec3::Z);
         self.polygon_normals[source.index as usize] = normal;
+        let heights = wide.iter().map(|&corner| normal.dot(corner - wide[0]).abs());
+        let bend = heights.fold(0.0, f64::max);
+        self.bends[source.index as usize].1 = bend;
         let bounds = bounds_of(&corners);
         let size = (bounds.high - bounds.low).length();
         self.polygons.push(PolygonFace {
             normal: normal.as_vec3().to_array(),
             point: corners[0].to_array(),
-            slack: touch_distance(largest_coordinate(bounds), size),
+            slack: touch_distance(largest_coordinate(bounds), size) + 2.0 * rounded(bend),
             id: polygon.id.0,
             first_corner: u32::try_from(first).unwrap_or(u32::MAX),
             edges: polygon.vertices.end - polygon.vertices.start,
@@ -245,6 +257,11 @@ impl Source {
         };
         Item { bounds, kind: self.kind, weight }
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+fn rounded(length: f64) -> f32 {
+    length as f32
 }
 
 fn bounds_of(points: &[Vec3]) -> Bounds {

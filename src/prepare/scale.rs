@@ -1,6 +1,6 @@
 //! The power of two that brings a scene to the size of 1.
 
-use crate::scene::{Light, Projection, Scene};
+use crate::scene::{Projection, Scene};
 use glam::{DVec3, Vec3};
 
 /// What every length of a scene is multiplied by.
@@ -11,13 +11,9 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Brings the largest coordinate of the geometry, the lights and the eye into [1, 2).
+    /// Brings the largest coordinate of the geometry and the eye into [1, 2).
     pub(crate) fn of(scene: &Scene) -> Self {
         let geometry = scene.geometry.bounds().map_or(DVec3::ZERO, |(low, high)| low.abs().max(high.abs()));
-        let lights = scene.lights.iter().map(|light| match light {
-            Light::Point { position, .. } => position.as_dvec3().abs().max_element(),
-            Light::Directional { .. } => 0.0,
-        });
         let window = match scene.camera.projection {
             Projection::OrthographicHeight { height } => f64::from(height),
             Projection::OrthographicWindow { window } => {
@@ -27,7 +23,7 @@ impl Scale {
             Projection::PerspectiveAngle { .. } | Projection::PerspectiveWindow { .. } => 0.0,
         };
         let eye = scene.camera.eye.as_dvec3().abs().max_element();
-        Self::bringing_to_one(lights.fold(geometry.max_element().max(eye).max(window), f64::max))
+        Self::bringing_to_one(geometry.max_element().max(eye).max(window))
     }
 
     fn bringing_to_one(largest: f64) -> Self {

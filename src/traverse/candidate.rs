@@ -1,9 +1,10 @@
 //! What counts as a hit of a primitive at 0 < t, for one pair of ray and primitive in each lane.
 //!
 //! A ray that starts on a surface meets that surface again only where geometry says so: a plane never, a sphere once if the
-//! ray goes inside. This is known from the event that made the ray, not from the sign of a rounded number. Whatever else
-//! touches the surface there, as far as f32 can tell, is met at t = 0, which is no hit. Together they keep a surface from
-//! shadowing or reflecting itself without a tolerance that a scene could be too small or too large for.
+//! ray goes inside. This is known from the event that made the ray, not from the sign of a rounded number. Where the start
+//! is so near to another surface that f32 cannot tell on which side of it, `exact` decides, which knows what the start's
+//! rounding left out. Together they keep a surface from shadowing or reflecting itself or its neighbours, without a
+//! tolerance that a scene could be too small or too large for.
 
 use crate::kernel::RaySpace;
 use crate::kernel::polygon::{self, Outline};
@@ -27,6 +28,16 @@ pub(super) struct Candidate<F: Single> {
     /// How far t may be from the true one, at most.
     pub(super) error: F,
     pub(super) hit: F::Mask,
+    /// Lanes whose ray starts so near to the surface that f32 cannot tell on which side: `exact` decides, and `hit` is
+    /// false.
+    pub(super) unclear: F::Mask,
+}
+
+impl<F: Single> Candidate<F> {
+    fn none() -> Self {
+        let (zero, none) = (F::splat(0.0), F::first(0));
+        Self { t: zero, error: zero, hit: none, unclear: none }
+    }
 }
 
 /// Ray space, the line, and how far a surface may seem to be from where it is: `bounds::PADDING` of the coordinates that
@@ -48,15 +59,23 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
 ) -> Candidate<F> {
     let zero = F::splat(0.0);
     let meeting = triangle::meet(space, vertices, zero);
-    if !meeting.inside.any() {
-        return Candidate { t: zero, error: zero, hit: meeting.inside };
+    let touches = if DEPARTING {
+        // A little beyond the edges too: the start itself is rounded.
+        let margin = meeting.seen_double_area.abs() * F::splat(1.0 / 256.0);
+        let is_seen = !meeting.seen_double_area.eq(zero);
+        meeting.is_inside(margin) & is_seen & !meeting.volume.abs().gt(slack) & !start.own
+    } else {
+        F::first(0)
+    };
+    if !(meeting.inside | touches).any() {
+        return Candidate::none();
     }
     let t = meeting.t(space);
     let hit = meeting.inside & t.gt(zero);
-    let hit = if DEPARTING { hit & meeting.volume.abs().gt(slack) & !start.own } else { hit };
+    let hit = if DEPARTING { hit & !touches & !start.own } else { hit };
     // cos θ·|d| = |seen area·d_z| / area.
     let error = padding * double_area * (space.t_per_z / meeting.seen_double_area).abs();
-    Candidate { t, error, hit }
+    Candidate { t, error, hit, unclear: touches }
 }
 
 #[inline(always)]
@@ -70,18 +89,19 @@ pub(super) fn sphere<F: Single, const DEPARTING: bool>(
     let zero = F::splat(0.0);
     let meeting = sphere::meet(line, center, radius * radius, zero);
     if !(meeting.meets | start.own).any() {
-        return Candidate { t: zero, error: zero, hit: meeting.meets };
+        return Candidate::none();
     }
     // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
     let error = (padding + padding) * radius / (meeting.half_t * line.a);
+    let (t, hit) = meeting.nearest(zero);
     if !DEPARTING {
-        let (t, hit) = meeting.nearest(zero);
-        return Candidate { t, error, hit };
+        return Candidate { t, error, hit, unclear: F::first(0) };
     }
-    let (t, hit) = meeting.nearest_beyond(line, slack);
+    let touches = meeting.touches(line, slack) & !start.own;
     let far_side = meeting.far_side();
     let own_hit = start.own & start.inward & far_side.gt(zero);
-    Candidate { t: F::select(start.own, far_side, t), error, hit: own_hit | (!start.own & hit) }
+    let hit = own_hit | (!start.own & !touches & hit);
+    Candidate { t: F::select(start.own, far_side, t), error, hit, unclear: touches }
 }
 
 /// `plane` is a point and the normal; `outline` has taken in all edges.
@@ -97,6 +117,10 @@ pub(super) fn polygon<F: Single, const DEPARTING: bool>(
     let corner_ts = [outline.least_z * view.space.t_per_z, outline.largest_z * view.space.t_per_z];
     let meeting = polygon::meet_plane([view.line.origin, view.line.direction], plane, corner_ts, zero);
     let hit = outline.odd & meeting.meets & meeting.t.gt(zero);
-    let hit = if DEPARTING { hit & meeting.height.abs().gt(slack) & !start.own } else { hit };
-    Candidate { t: meeting.t, error: view.padding / meeting.slope.abs(), hit }
+    let error = view.padding / meeting.slope.abs();
+    if !DEPARTING {
+        return Candidate { t: meeting.t, error, hit, unclear: F::first(0) };
+    }
+    let touches = !meeting.height.abs().gt(slack) & !start.own;
+    Candidate { t: meeting.t, error, hit: hit & !touches & !start.own, unclear: touches }
 }

@@ -1,4 +1,4 @@
-//! Which of two hits is the nearer, where f32 cannot tell.
+//! What f32 cannot tell: which of two hits is the nearer, and whether a ray that starts next to a surface meets it.
 //!
 //! A kernel's t comes with a bound on its error. Hits whose t lie farther apart than their errors are in the order of
 //! their t; for the others t is computed again in f64. So the nearest hit is the nearest in f64, in whatever order
@@ -63,6 +63,9 @@ impl Spot {
     }
 }
 
+/// Error of a t that was computed in f64 and rounded to f32, as a share of it.
+pub(super) const ROUNDED: f32 = 2.0 * UNIT_ROUNDOFF;
+
 /// A ray in f64.
 #[derive(Clone, Copy)]
 pub(super) struct Line {
@@ -82,10 +85,89 @@ struct Hit {
 /// Seen more nearly edge-on than this, a surface that a light lies on is a line.
 const LEAST_COSINE: f64 = 1.0 / (1 << 12) as f64;
 
+/// What is no farther from a surface than this share of the coordinates touches it: the start of a ray is known to 2⁻⁴⁸ of
+/// them, and f64 rounds some tens of times by 2⁻⁵³.
+const TOUCHING: f64 = 1.0 / (1_u64 << 45) as f64;
+
 impl Line {
-    pub(super) fn new(origin: [f32; 3], direction: [f32; 3], departure: u32) -> Self {
-        let [origin, direction] = [origin, direction].map(|vector| DVec3::from(vector.map(f64::from)));
-        Self { origin, direction, departure }
+    /// `origin_low` is what the origin's rounding to f32 left out.
+    pub(super) fn new(origin: [f32; 3], origin_low: [f32; 3], direction: [f32; 3], departure: u32) -> Self {
+        let [origin, origin_low, direction] =
+            [origin, origin_low, direction].map(|vector| DVec3::from(vector.map(f64::from)));
+        Self { origin: origin + origin_low, direction, departure }
+    }
+
+    /// Where a ray that starts next to a surface meets it. What the start touches, as far as f64 can tell and polygons are
+    /// flat, it meets at t = 0, which is no hit.
+    #[cold]
+    pub(super) fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
+        let bend = hierarchy.bend(self.departure >> 1) + hierarchy.bend(spot.id(hierarchy));
+        let (index, lane) = spot.place();
+        let point = |columns: [f32; 3]| DVec3::from(columns.map(f64::from));
+        match spot.0 & 3 {
+            SPHERE => {
+                let block = &hierarchy.spheres[index];
+                let center = point(block.centers.map(|column| column[lane]));
+                let radius = f64::from(block.radii[lane]);
+                let extent = center.abs().max_element() + radius;
+                self.sphere(center, radius)
+                    .into_iter()
+                    .find_map(|hit| self.beyond_rounding(hit, extent, bend))
+            }
+            TRIANGLE => {
+                let block = &hierarchy.triangles[index];
+                let vertices = block.vertices.map(|vertex| point(vertex.map(|column| column[lane])));
+                let hit = self.triangle(vertices);
+                let t = self.beyond_rounding(hit, extent_of(vertices.into_iter()), bend)?;
+                self.is_in_triangle(vertices).then_some(t)
+            }
+            _ => {
+                let face = &hierarchy.polygons[index];
+                let corners = face.first_corner as usize..(face.first_corner + face.edges) as usize;
+                let corners =
+                    corners.map(|corner| point([0, 1, 2].map(|axis| hierarchy.corners[axis][corner])));
+                let hit = self.polygon(hierarchy.polygon_normals[face.source as usize], corners.clone());
+                let t = self.beyond_rounding(hit, extent_of(corners.clone()), bend)?;
+                self.is_in_polygon(corners).then_some(t)
+            }
+        }
+    }
+
+    /// t of a hit that is farther from the start than the rounding of f64 in both, and than polygons are bent.
+    fn beyond_rounding(&self, hit: Hit, extent: f64, bend: f64) -> Option<f32> {
+        let coordinates = extent + self.origin.abs().max_element();
+        let height = hit.t * hit.cosine.max(LEAST_COSINE) * self.direction.length();
+        #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+        let t = hit.t as f32;
+        (height > TOUCHING * coordinates + bend && t > 0.0).then_some(t)
+    }
+
+    /// A point as seen along the ray; see `kernel::RaySpace`.
+    fn see(&self, point: DVec3) -> [f64; 2] {
+        let third = self.direction.abs().max_position();
+        let from_origin = point - self.origin;
+        let along = from_origin[third] / self.direction[third];
+        [(third + 1) % 3, (third + 2) % 3].map(|axis| from_origin[axis] - self.direction[axis] * along)
+    }
+
+    fn is_in_triangle(&self, vertices: [DVec3; 3]) -> bool {
+        let [a, b, c] = vertices.map(|vertex| self.see(vertex));
+        let areas = [cross(b, c), cross(c, a), cross(a, b)];
+        areas.iter().all(|&area| area >= 0.0) || areas.iter().all(|&area| area <= 0.0)
+    }
+
+    fn is_in_polygon(&self, corners: impl Iterator<Item = DVec3> + Clone) -> bool {
+        let next = corners.clone().cycle().skip(1);
+        let crossed = corners.zip(next).filter(|&(from, to)| {
+            let (from, to) = (self.see(from), self.see(to));
+            let turn = cross(from, to);
+            match (from[1] < 0.0, to[1] < 0.0) {
+                (true, false) => turn > 0.0,
+                (false, true) => turn < 0.0,
+                _ => false,
+            }
+        });
+        crossed.count() % 2 == 1
     }
 
     /// Whether the first of two hits is the one to be seen. Each is a place and the t that the kernel found.
@@ -98,8 +180,8 @@ impl Line {
         new_t < old_t || (new_t == old_t && new_id < old_id)
     }
 
-    /// Whether a hit is before the end of the segment to a light at `t_max`, which is 1 or infinite. The segment's direction
-    /// was rounded to f32, so a surface that the light lies on is met at 1 give or take that.
+    /// Whether a hit is before the end of the segment to a light. The segment's direction was rounded to f32, so a surface
+    /// that the light lies on is met at the end give or take that.
     #[cold]
     pub(super) fn is_before_light(&self, hierarchy: &Hierarchy, spot: Spot, t: f32, t_max: f32) -> bool {
         if t_max == f32::INFINITY {
@@ -107,7 +189,7 @@ impl Line {
         }
         let hit = self.hit(hierarchy, spot, f64::from(t));
         let rounding = 2.0 * f64::from(UNIT_ROUNDOFF) / hit.cosine.max(LEAST_COSINE);
-        hit.t < f64::from(t_max) - rounding
+        hit.t < f64::from(t_max) * (1.0 - rounding)
     }
 
     fn hit(&self, hierarchy: &Hierarchy, spot: Spot, t: f64) -> Hit {
@@ -116,13 +198,13 @@ impl Line {
         match spot.0 & 3 {
             SPHERE => {
                 let block = &hierarchy.spheres[index];
-                let is_own = self.departure >> 1 == block.ids[lane];
-                self.sphere(
-                    point(block.centers.map(|column| column[lane])),
-                    f64::from(block.radii[lane]),
-                    t,
-                    is_own,
-                )
+                let center = point(block.centers.map(|column| column[lane]));
+                let [near, far] = self.sphere(center, f64::from(block.radii[lane]));
+                if self.departure >> 1 == block.ids[lane] {
+                    // One root is the start itself, at 0, and the other is their sum.
+                    return Hit { t: near.t + far.t, ..far };
+                }
+                if (near.t - t).abs() <= (far.t - t).abs() { near } else { far }
             }
             TRIANGLE => {
                 let block = &hierarchy.triangles[index];
@@ -138,18 +220,16 @@ impl Line {
         }
     }
 
-    /// The root of the quadratic that is next to t; see `kernel::sphere`.
-    fn sphere(&self, center: DVec3, radius: f64, t: f64, is_own: bool) -> Hit {
+    /// Both roots of the quadratic, the nearer first; see `kernel::sphere`.
+    fn sphere(&self, center: DVec3, radius: f64) -> [Hit; 2] {
         let from_center = self.origin - center;
         let a = self.direction.length_squared();
         let closest_t = -from_center.dot(self.direction) / a;
         let closest = from_center + closest_t * self.direction;
         let half_squared = radius * radius - closest.length_squared();
         let half_t = if half_squared > 0.0 { (half_squared / a).sqrt() } else { 0.0 };
-        let (near, far) = (closest_t - half_t, closest_t + half_t);
-        let root = if (near - t).abs() <= (far - t).abs() { near } else { far };
-        let t = if is_own { closest_t + closest_t } else { root };
-        Hit { t, cosine: half_t * a.sqrt() / radius }
+        let cosine = half_t * a.sqrt() / radius;
+        [closest_t - half_t, closest_t + half_t].map(|t| Hit { t, cosine })
     }
 
     /// Where the line meets the plane, kept between its vertices for a plane seen edge-on.
@@ -177,6 +257,18 @@ impl Line {
         let t = if t <= largest { t } else { largest };
         Hit { t, cosine: slope.abs() / (length * self.direction.length()) }
     }
+}
+
+/// Twice the signed area of the triangle (foot of the ray, a, b).
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn extent_of(points: impl Iterator<Item = DVec3>) -> f64 {
+    points.fold(0.0, |extent, point| {
+        let largest = point.abs().max_element();
+        if largest > extent { largest } else { extent }
+    })
 }
 
 /// Rounded to 32 significant bits: far finer than f32, and far coarser than the rounding of f64.

@@ -24,7 +24,9 @@ use packet::{PACKET, Packet};
 /// Rays in columns, in runs of [`RUN`]: where the last run is not full, rows that cannot hit fill it, with t < 0.
 pub(crate) struct Rays<'a> {
     pub(crate) origin: [&'a [f32]; 3],
-    /// Of any length but 0.
+    /// What the rounding of a start to f32 left out; empty where no ray starts on a primitive.
+    pub(crate) origin_low: [&'a [f32]; 3],
+    /// Of any length but 0, near 1 so that squares do not overflow.
     pub(crate) direction: [&'a [f32]; 3],
     /// Twice the id of the primitive that the ray starts on, plus 1 if it goes inside; [`NOWHERE`] if it starts on none.
     /// Empty where no ray starts on a primitive.

@@ -27,6 +27,8 @@ type Column = [f32; PACKET];
 #[repr(C, align(64))]
 pub(super) struct Packet {
     origin: [Column; 3],
+    /// What the origins' rounding left out; not read where no ray starts on a primitive.
+    origin_low: [Column; 3],
     direction: [Column; 3],
     near_origin: [Column; 3],
     far_origin: [Column; 3],
@@ -84,6 +86,7 @@ impl Packet {
         let column = [0.0; PACKET];
         Self {
             origin: [column; 3],
+            origin_low: [column; 3],
             direction: [column; 3],
             near_origin: [column; 3],
             far_origin: [column; 3],
@@ -140,6 +143,9 @@ impl Packet {
         self.error = [0.0; PACKET];
         self.spot = [Spot::NOTHING.0; PACKET];
         if !rays.departure.is_empty() {
+            for axis in 0..3 {
+                self.origin_low[axis].copy_from_slice(&rays.origin_low[axis][run.clone()]);
+            }
             self.departure.copy_from_slice(&rays.departure[run]);
         }
         self.derive::<F>(hierarchy);
@@ -465,7 +471,7 @@ impl Packet {
         counts.polygons.calls += u64::from(face.edges);
         counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
         counts.polygons.used += u64::from(face.edges) * used as u64;
-        if !(outline.odd & mask).any() {
+        if !DEPARTING && !(outline.odd & mask).any() {
             return;
         }
         let view = View { space, line: self.line(row), padding: F::load(&self.padding[row..]) };
@@ -487,7 +493,13 @@ impl Packet {
         mask: F::Mask,
         spot: Spot,
     ) {
-        let Candidate { t, error, hit } = *candidate;
+        let Candidate { t, error, hit, unclear } = *candidate;
+        let mut departing = (unclear & mask).bits();
+        while departing != 0 {
+            let row = row + departing.trailing_zeros() as usize;
+            departing &= departing - 1;
+            self.offer_exact::<ANY>(hierarchy, row, spot);
+        }
         let hit = hit & mask;
         if !hit.any() {
             return;
@@ -519,19 +531,44 @@ impl Packet {
         }
     }
 
+    fn exact(&self, row: usize) -> exact::Line {
+        let [origin, origin_low, direction] = [&self.origin, &self.origin_low, &self.direction]
+            .map(|columns| columns.each_ref().map(|column| column[row]));
+        exact::Line::new(origin, origin_low, direction, self.departure[row])
+    }
+
+    /// Takes in what a ray meets that starts next to it.
+    #[cold]
+    fn offer_exact<const ANY: bool>(&mut self, hierarchy: &Hierarchy, row: usize, spot: Spot) {
+        if self.t[row] < 0.0 {
+            return;
+        }
+        let Some(t) = self.exact(row).departs_to(hierarchy, spot) else { return };
+        let error = t * exact::ROUNDED;
+        let is_taken = if ANY {
+            t + error < self.t[row]
+                || (t - error < self.t[row] && self.decide::<ANY>(hierarchy, row, t, spot))
+        } else {
+            t + error < self.t[row] - self.error[row]
+                || (t - error <= self.end[row] && self.decide::<ANY>(hierarchy, row, t, spot))
+        };
+        if is_taken && ANY {
+            (self.t[row], self.end[row]) = (DEAD, DEAD);
+        } else if is_taken {
+            (self.t[row], self.error[row], self.end[row], self.spot[row]) = (t, error, t + error, spot.0);
+        }
+    }
+
     /// Decides in f64 for one ray.
     #[cold]
     fn decide<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, t: f32, spot: Spot) -> bool {
-        let [origin, direction] =
-            [&self.origin, &self.direction].map(|columns| columns.each_ref().map(|c| c[row]));
-        let line = exact::Line::new(origin, direction, self.departure[row]);
         let nearest = Spot(self.spot[row]);
         if ANY {
-            line.is_before_light(hierarchy, spot, t, self.t[row])
+            self.exact(row).is_before_light(hierarchy, spot, t, self.t[row])
         } else if nearest == Spot::NOTHING {
             t < self.t[row]
         } else {
-            line.is_nearer(hierarchy, (spot, t), (nearest, self.t[row]))
+            self.exact(row).is_nearer(hierarchy, (spot, t), (nearest, self.t[row]))
         }
     }
 

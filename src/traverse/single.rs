@@ -14,6 +14,7 @@ use crate::prepare::{BLOCK, Hierarchy, Place};
 /// What the tests need of a ray.
 pub(super) struct Ray {
     origin: [f32; 3],
+    origin_low: [f32; 3],
     direction: [f32; 3],
     /// Whether the direction's component is negative.
     backwards: [bool; 3],
@@ -54,6 +55,7 @@ impl Ray {
         };
         Self {
             origin,
+            origin_low: rays.origin_low.map(|column| column.get(row).copied().unwrap_or(0.0)),
             direction,
             backwards,
             near_origin: [0, 1, 2].map(|axis| padded(axis, padding)),
@@ -96,6 +98,10 @@ impl Ray {
         }
     }
 
+    fn exact(&self) -> exact::Line {
+        exact::Line::new(self.origin, self.origin_low, self.direction, self.departure)
+    }
+
     /// Whether the ray starts on primitives of these ids, and then which way it goes.
     #[inline(always)]
     fn start<F: Single>(&self, ids: F::Ids) -> Start<F> {
@@ -126,7 +132,7 @@ impl Target<'_> {
     #[inline(always)]
     fn offer<const ANY: bool>(&mut self, t: f32, error: f32, spot: Spot) {
         let nearest = &self.nearest;
-        let exact = || exact::Line::new(self.ray.origin, self.ray.direction, self.ray.departure);
+        let exact = || self.ray.exact();
         let is_taken = if ANY {
             let is_beyond = t - error >= nearest.t;
             let is_before_end = t + error < nearest.t
@@ -153,7 +159,15 @@ impl Target<'_> {
         candidate: &Candidate<F>,
         spot: impl Fn(usize) -> Spot,
     ) {
-        let Candidate { t, error, hit } = *candidate;
+        let Candidate { t, error, hit, unclear } = *candidate;
+        let mut unclear = unclear.bits();
+        while unclear != 0 {
+            let spot = spot(unclear.trailing_zeros() as usize);
+            unclear &= unclear - 1;
+            if let Some(t) = self.ray.exact().departs_to(self.hierarchy, spot) {
+                self.offer::<ANY>(t, t * exact::ROUNDED, spot);
+            }
+        }
         let mut bits = (hit & !(t - error).gt(F::splat(self.nearest.end))).bits();
         if bits == 0 {
             return;
@@ -319,11 +333,12 @@ impl Target<'_> {
             outline.add_edge(&corners(edge), &corners(edge + 1), zero);
             counts.polygons.add(F::WIDTH, (first + edges - edge).min(F::WIDTH));
         }
-        if outline.odd.bits().count_ones().is_multiple_of(2) {
+        let odd = !outline.odd.bits().count_ones().is_multiple_of(2);
+        if !odd && !DEPARTING {
             return;
         }
         let outline = Outline {
-            odd: true,
+            odd,
             least_z: fold(outline.least_z, Lanes::min),
             largest_z: fold(outline.largest_z, Lanes::max),
         };

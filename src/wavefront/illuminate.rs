@@ -35,10 +35,8 @@ pub(super) fn aim<D: Double>(
     work: &mut Work,
 ) -> u64 {
     shadows.clear();
-    let (intensity, t_max) = match *light {
-        Light::Point { intensity, .. } => (intensity, 1.0),
-        Light::Directional { intensity, .. } => (intensity, f32::INFINITY),
-    };
+    let (Light::Point { intensity, .. } | Light::Directional { intensity, .. }) = *light;
+    let light_is_near = matches!(light, Light::Point { .. });
     let materials = &prepared.scene.materials;
     let adds = |material: &Material| {
         material.diffuse * intensity != Rgb::ZERO || material.specular * intensity != Rgb::ZERO
@@ -87,34 +85,60 @@ pub(super) fn aim<D: Double>(
         }
         let [diffuse_r, diffuse_g, diffuse_b, specular_r, specular_g, specular_b, shininess] =
             coefficients.map(|column| D::widen(&column));
-        let mut light = Vector::new(diffuse_r, diffuse_g, diffuse_b) * cos_light;
+        let mut added = Vector::new(diffuse_r, diffuse_g, diffuse_b) * cos_light;
         if prepared.plan.highlights && coefficients[3..6].iter().any(|column| *column != [0.0; 8]) {
             let half = (l - surface.direction).normalized(one);
             // Where v = −l there is no half vector, and a maximum with NaN first is 0.
             let cos_half = surface.shading_normal.dot(half).max(zero);
             let highlight = pow(cos_half, shininess);
             powers += used as u64;
-            light = light + Vector::new(specular_r, specular_g, specular_b) * highlight;
+            added = added + Vector::new(specular_r, specular_g, specular_b) * highlight;
         }
-        let light = light.times(Vector::splat(intensity.as_dvec3().to_array()));
-        push_rows(bits, first, to_light, light, t_max, surfaces, shadows);
+        let added = added.times(Vector::splat(intensity.as_dvec3().to_array()));
+        let segment = match light_is_near {
+            true => Segment::to_point(to_light),
+            false => Segment { direction: l, end: D::splat(f64::INFINITY) },
+        };
+        push_rows(bits, first, &segment, added, surfaces, shadows);
     }
     powers
+}
+
+/// The way from a surface to a light.
+struct Segment<D> {
+    direction: Vector<D>,
+    /// t of the light.
+    end: D,
+}
+
+impl<D: Double> Segment<D> {
+    /// A light may be so far away that squares overflow f32: the direction is brought to the size of 1 by a power of two,
+    /// which leaves its bits as they are.
+    fn to_point(to_light: Vector<D>) -> Self {
+        let zero = D::splat(0.0);
+        let largest = to_light.x.abs().max(to_light.y.abs()).max(to_light.z.abs());
+        let (exponent, _) = D::select(largest.gt(zero), largest, D::splat(1.0)).split_exponent();
+        let one = D::splat(1.0);
+        Self {
+            direction: to_light * one.times_power_of_two(-exponent),
+            end: one.times_power_of_two(exponent),
+        }
+    }
 }
 
 /// Pushes the lanes whose bits are set.
 fn push_rows<D: Double>(
     mut bits: u32,
     first: usize,
-    to_light: Vector<D>,
+    segment: &Segment<D>,
     light: Vector<D>,
-    t: f32,
     surfaces: &SurfaceQueue,
     shadows: &mut ShadowQueue,
 ) {
-    let mut rounded = [[0.0; 8]; 6];
+    let mut rounded = [[0.0; 8]; 7];
+    let Segment { direction, end } = segment;
     for (lanes, column) in
-        [to_light.x, to_light.y, to_light.z, light.x, light.y, light.z].into_iter().zip(&mut rounded)
+        [direction.x, direction.y, direction.z, light.x, light.y, light.z, *end].into_iter().zip(&mut rounded)
     {
         lanes.round(column);
     }
@@ -122,11 +146,12 @@ fn push_rows<D: Double>(
         let lane = bits.trailing_zeros() as usize;
         bits &= bits - 1;
         let row = first + lane;
-        let [dx, dy, dz, r, g, b] = rounded.map(|column| column[lane]);
+        let [dx, dy, dz, r, g, b, t] = rounded.map(|column| column[lane]);
         #[expect(clippy::cast_possible_truncation, reason = "a batch has some thousand rows")]
         let surface = row as u32;
         shadows.push(ShadowRecord {
             origin: [0, 1, 2].map(|axis| surfaces.position[axis][row]),
+            origin_low: [0, 1, 2].map(|axis| surfaces.position_low[axis][row]),
             direction: [dx, dy, dz],
             departure: surfaces.departure[row],
             t,

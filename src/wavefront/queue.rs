@@ -130,6 +130,8 @@ queue! {
     DepartureQueue of DepartureRecord {
         /// twice the id of the primitive that the ray starts on, plus 1 if it goes inside
         departure: u32,
+        /// what the start's rounding to f32 left out
+        origin_low: [f32; 3],
         /// share of what the ray sees that reaches the eye, linear RGB
         weight: [f32; 3],
     }
@@ -158,6 +160,8 @@ queue! {
         direction: [f32; 3],
         /// the point, scene scale
         position: [f32; 3],
+        /// what its rounding to f32 left out
+        position_low: [f32; 3],
         /// n_g, unit, on the side that the ray comes from
         geometric_normal: [f32; 3],
     }
@@ -176,11 +180,13 @@ queue! {
     ShadowQueue of ShadowRecord {
         /// start, scene scale
         origin: [f32; 3],
-        /// to a point light the whole way, so that t = 1 is the light; to a directional one unit length
+        /// what its rounding to f32 left out
+        origin_low: [f32; 3],
+        /// to a point light the whole way, divided by a power of two; to a directional one unit length
         direction: [f32; 3],
         /// twice the id of the primitive that the ray starts on, plus 1 if it goes inside
         departure: u32,
-        /// where the segment ends: 1 or infinite; −1 once it is known to be occluded
+        /// where the segment ends: that power of two, or infinite; −1 once it is known to be occluded
         t: f32,
         /// row of the surface
         surface: u32,
@@ -273,6 +279,7 @@ mod tests {
         let mut shadows = ShadowQueue::with_capacity(1);
         let record = ShadowRecord {
             origin: [1.0, 2.0, 3.0],
+            origin_low: [0.1, 0.2, 0.3],
             direction: [4.0, 5.0, 6.0],
             departure: 7,
             t: 8.0,

@@ -235,7 +235,8 @@ impl Spawning<'_> {
             // Another side, another lowest bit.
             let departure = self.surfaces.departure[row] ^ u32::from(!is_reflected);
             let origin = [0, 1, 2].map(|axis| self.surfaces.position[axis][row]);
-            self.deeper.departures.push(DepartureRecord { departure, weight });
+            let origin_low = [0, 1, 2].map(|axis| self.surfaces.position_low[axis][row]);
+            self.deeper.departures.push(DepartureRecord { departure, origin_low, weight });
             self.deeper.rays.push(RayRecord { origin, direction })
         } else {
             NOTHING

@@ -127,6 +127,8 @@ impl Out<'_, '_> {
         let entering = found.direction.dot(found.geometric_normal).lt(zero);
         let facing = |normal: Vector<D>| Vector::select(entering, normal, -normal);
         round_rows(found.position, &mut self.surfaces.position, first, chunk.len());
+        let left_out = found.position - rounded(found.position);
+        round_rows(left_out, &mut self.surfaces.position_low, first, chunk.len());
         round_rows(facing(found.geometric_normal), &mut self.surfaces.geometric_normal, first, chunk.len());
         if self.prepared.plan.vertex_normals {
             self.normals.set_len(first + chunk.len());
@@ -146,6 +148,17 @@ impl Out<'_, '_> {
             }
         }
     }
+}
+
+/// As f32 has it.
+#[inline(always)]
+fn rounded<D: Double>(vector: Vector<D>) -> Vector<D> {
+    let round = |lanes: D| {
+        let mut rounded = [0.0; 8];
+        lanes.round(&mut rounded);
+        D::widen(&rounded)
+    };
+    Vector::new(round(vector.x), round(vector.y), round(vector.z))
 }
 
 /// Lanes may reach beyond the last row of a column; only rows are written.

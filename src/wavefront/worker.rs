@@ -186,8 +186,17 @@ impl<'a> Worker<'a> {
             hits.t[..count].fill(f32::INFINITY);
             hits.t[count..filled].fill(DEAD);
             hits.id[..count].fill(NOTHING);
-            let departure = if depth == 0 { &[][..] } else { &level.departures.departure[first..] };
+            let none = &[][..];
+            let departures = &level.departures;
+            let (departure, origin_low) = match depth {
+                0 => (&[][..], [none; 3]),
+                _ => (
+                    &departures.departure[first..],
+                    [0, 1, 2].map(|axis| &departures.origin_low[axis][first..]),
+                ),
+            };
             let rays = Rays {
+                origin_low,
                 origin: [0, 1, 2].map(|axis| &level.rays.origin[axis][first..]),
                 direction: [0, 1, 2].map(|axis| &level.rays.direction[axis][first..]),
                 departure,
@@ -251,6 +260,7 @@ impl<'a> Worker<'a> {
                 let rays = Rays {
                     origin: shadows.origin.each_ref().map(|column| &column[..]),
                     direction: shadows.direction.each_ref().map(|column| &column[..]),
+                    origin_low: shadows.origin_low.each_ref().map(|column| &column[..]),
                     departure: &shadows.departure,
                     count,
                 };
