@@ -7,6 +7,23 @@ use wavelane::lanes::Width;
 use wavelane::load::load;
 use wavelane::measure::Agreement;
 
+/// A row of docs/accuracy.md; shown with `--nocapture`.
+#[expect(clippy::print_stdout, reason = "what a test prints is its own")]
+fn print(name: &str, found: &Agreement) {
+    let Agreement { engine, floor, .. } = found;
+    println!(
+        "| {name} | {:.1e} | {:.1e} | {} | {} | {} | {} | {} | {} |",
+        engine.rms,
+        floor.rms,
+        engine.pixels_over,
+        floor.pixels_over,
+        found.wrong_primaries,
+        found.uncertain_primaries,
+        found.pixels - found.same_trees,
+        found.same_trees_over
+    );
+}
+
 /// Renders small, with the scene's own samples and depth.
 fn agrees(path: &Path) {
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -14,6 +31,7 @@ fn agrees(path: &Path) {
     (scene.image.width, scene.image.height) = (200, 200);
     scene.render.samples = scene.render.samples.min(2);
     let found = Agreement::measure(&scene, Width::BEST).unwrap();
+    print(&name, &found);
     assert_eq!(found.wrong_primaries, 0, "{name}: {found:?}");
 
     // Light is f32 too, where the floor rounds rays and hits alone: half a unit in its last place is no error.
