@@ -16,7 +16,7 @@ use crate::lanes::Lanes;
 pub(crate) struct RaySpace<L> {
     /// Of the ray, in its order of axes.
     pub(crate) origin: [L; 3],
-    /// d_x / d_z and d_y / d_z.
+    /// d_x / d_z and d_y / d_z, each as a product with 1 / d_z.
     pub(crate) shear: [L; 2],
     /// 1 / d_z: turns a distance along the third axis into t.
     pub(crate) t_per_z: L,

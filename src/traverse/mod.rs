@@ -97,7 +97,7 @@ fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
         let count = (rays.count - first).min(RUN);
         if packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
             packet.walk::<F, DEPARTING, ANY>(hierarchy, &mut packet_stack, counts);
-            packet.scatter::<ANY>(hierarchy, ends, first);
+            packet.scatter::<ANY>(ends, first);
         } else {
             for row in first..first + count {
                 let ray = single::Ray::new(hierarchy, rays, row);

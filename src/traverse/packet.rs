@@ -44,6 +44,7 @@ pub(super) struct Packet {
     end: Column,
     /// Where the nearest hit lies in the hierarchy, as a [`Spot`].
     spot: [u32; PACKET],
+    id: [u32; PACKET],
     /// By how much boxes are grown.
     padding: Column,
     departure: [u32; PACKET],
@@ -53,6 +54,8 @@ pub(super) struct Packet {
     backwards: [bool; 3],
     hull: Hull,
     count: usize,
+    /// Whether a hit was taken in since the hull was made.
+    is_changed: bool,
 }
 
 /// Bounds of what the slab tests use of all rays.
@@ -99,12 +102,14 @@ impl Packet {
             error: column,
             end: [DEAD; PACKET],
             spot: [Spot::NOTHING.0; PACKET],
+            id: [super::NOTHING; PACKET],
             padding: column,
             departure: [super::NOWHERE; PACKET],
             axes: [0, 1, 2],
             backwards: [false; 3],
             hull: Hull::default(),
             count: 0,
+            is_changed: false,
         }
     }
 
@@ -125,23 +130,24 @@ impl Packet {
             self.direction[axis].copy_from_slice(direction);
             self.origin[axis].copy_from_slice(&rays.origin[axis][run.clone()]);
         }
-        for slope in 0..2 {
-            let mut bounds = [F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY)];
-            for row in (0..PACKET).step_by(F::WIDTH) {
-                let shear =
-                    F::load(&self.direction[axes[slope]][row..]) / F::load(&self.direction[axes[2]][row..]);
+        let mut slopes = [[F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY)]; 2];
+        for row in (0..PACKET).step_by(F::WIDTH) {
+            let t_per_z = F::splat(1.0) / F::load(&self.direction[axes[2]][row..]);
+            t_per_z.store(&mut self.t_per_z[row..]);
+            for (slope, bounds) in slopes.iter_mut().enumerate() {
+                let shear = F::load(&self.direction[axes[slope]][row..]) * t_per_z;
                 shear.store(&mut self.shear[slope][row..]);
-                bounds = widened(bounds, shear);
+                *bounds = widened(*bounds, shear);
             }
-            let [least, largest] = folded(bounds);
-            if largest - least > WIDEST_SLOPES {
-                return false;
-            }
+        }
+        if slopes.into_iter().map(folded).any(|[least, largest]| largest - least > WIDEST_SLOPES) {
+            return false;
         }
         self.t.copy_from_slice(&t[run.clone()]);
         self.end = self.t;
         self.error = [0.0; PACKET];
         self.spot = [Spot::NOTHING.0; PACKET];
+        self.id = [super::NOTHING; PACKET];
         if !rays.departure.is_empty() {
             for axis in 0..3 {
                 self.origin_low[axis].copy_from_slice(&rays.origin_low[axis][run.clone()]);
@@ -152,18 +158,20 @@ impl Packet {
         true
     }
 
-    /// What the tests need beside origin and direction.
+    /// What the tests need beside origin, direction and ray space.
     fn derive<F: Single>(&mut self, hierarchy: &Hierarchy) {
         let one = F::splat(1.0);
+        let none = [F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY)];
+        let (mut nears, mut fars, mut inverses) = ([none; 3], [none; 3], [none; 3]);
         for row in (0..PACKET).step_by(F::WIDTH) {
             let origin = self.origin.map_lanes::<F>(row);
             let direction = self.direction.map_lanes::<F>(row);
+            if !hierarchy.spheres.is_empty() {
+                let a = direction.dot(direction);
+                a.store(&mut self.a[row..]);
+                (one / a).store(&mut self.inverse_a[row..]);
+            }
             let third = [direction.x, direction.y, direction.z][self.axes[2]];
-            (one / third).store(&mut self.t_per_z[row..]);
-            let a = direction.dot(direction);
-            a.store(&mut self.a[row..]);
-            (one / a).store(&mut self.inverse_a[row..]);
-
             let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
             let padding = (F::splat(hierarchy.extent) + farthest) * F::splat(PADDING);
             padding.store(&mut self.padding[row..]);
@@ -174,14 +182,18 @@ impl Packet {
                 let (forward, backward) = (origin + padding, origin - padding);
                 let (near, far, component) =
                     if self.backwards[axis] { (backward, forward, -size) } else { (forward, backward, size) };
+                let inverse =
+                    if axis == self.axes[2] { F::load(&self.t_per_z[row..]) } else { one / component };
                 near.store(&mut self.near_origin[axis][row..]);
                 far.store(&mut self.far_origin[axis][row..]);
-                (one / component).store(&mut self.inverse[axis][row..]);
+                inverse.store(&mut self.inverse[axis][row..]);
+                nears[axis] = widened(nears[axis], near);
+                fars[axis] = widened(fars[axis], far);
+                inverses[axis] = widened(inverses[axis], inverse);
             }
         }
         for axis in 0..3 {
-            let [near, far, inverse] = [&self.near_origin, &self.far_origin, &self.inverse]
-                .map(|columns| column_bounds::<F>(&columns[axis]));
+            let [near, far, inverse] = [nears[axis], fars[axis], inverses[axis]].map(folded);
             // The nearest near plane belongs to the origin that is farthest along, the farthest far plane to the other.
             let (along, against) = if self.backwards[axis] { (0, 1) } else { (1, 0) };
             self.hull.near_origin[axis] = near[along];
@@ -192,12 +204,10 @@ impl Packet {
     }
 
     /// Puts the results back.
-    pub(super) fn scatter<const ANY: bool>(&self, hierarchy: &Hierarchy, ends: &mut Ends<'_>, first: usize) {
+    pub(super) fn scatter<const ANY: bool>(&self, ends: &mut Ends<'_>, first: usize) {
         ends.t[first..first + PACKET].copy_from_slice(&self.t);
         if !ANY {
-            for (id, &spot) in ends.id[first..first + PACKET].iter_mut().zip(&self.spot) {
-                *id = Spot(spot).id(hierarchy);
-            }
+            ends.id[first..first + PACKET].copy_from_slice(&self.id);
         }
     }
 
@@ -234,7 +244,9 @@ impl Packet {
                         (group, mask),
                         counts,
                     );
-                    self.hull.t_max = column_bounds::<F>(&self.end)[1];
+                    if std::mem::take(&mut self.is_changed) {
+                        self.hull.t_max = column_bounds::<F>(&self.end)[1];
+                    }
                     if ANY && self.hull.t_max < 0.0 {
                         return;
                     }
@@ -412,7 +424,7 @@ impl Packet {
             let sizes = [F::splat(block.slack[lane]), F::splat(block.double_area[lane])];
             let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
             counts.triangles.add(F::WIDTH, used);
-            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, Spot::triangle(index, lane));
+            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::triangle(index, lane), id));
         }
     }
 
@@ -440,7 +452,7 @@ impl Packet {
             let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
             let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
             counts.spheres.add(F::WIDTH, used);
-            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, Spot::sphere(index, lane));
+            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::sphere(index, lane), id));
         }
     }
 
@@ -479,7 +491,7 @@ impl Packet {
         let start = self.start::<F, DEPARTING>(row, face.id);
         let candidate =
             candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
-        self.offer::<F, ANY>(hierarchy, row, &candidate, mask, Spot::polygon(index));
+        self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::polygon(index), face.id));
     }
 
     /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See [`exact`] for those
@@ -491,7 +503,7 @@ impl Packet {
         row: usize,
         candidate: &Candidate<F>,
         mask: F::Mask,
-        spot: Spot,
+        (spot, id): (Spot, u32),
     ) {
         let Candidate { t, error, hit, unclear } = *candidate;
         let mut departing = (unclear & mask).bits();
@@ -525,9 +537,9 @@ impl Packet {
                 is_taken[lane] =
                     f32::from(u8::from(self.decide::<ANY>(hierarchy, row + lane, ts[lane], spot)));
             }
-            self.take::<F, ANY>(row, candidate, closer | F::load(&is_taken).gt(F::splat(0.0)), spot);
+            self.take::<F, ANY>(row, candidate, closer | F::load(&is_taken).gt(F::splat(0.0)), (spot, id));
         } else if closer.any() {
-            self.take::<F, ANY>(row, candidate, closer, spot);
+            self.take::<F, ANY>(row, candidate, closer, (spot, id));
         }
     }
 
@@ -545,6 +557,7 @@ impl Packet {
         }
         let Some(t) = self.exact(row).departs_to(hierarchy, spot) else { return };
         let error = t * exact::ROUNDED;
+        self.is_changed = true;
         let is_taken = if ANY {
             t + error < self.t[row]
                 || (t - error < self.t[row] && self.decide::<ANY>(hierarchy, row, t, spot))
@@ -555,7 +568,8 @@ impl Packet {
         if is_taken && ANY {
             (self.t[row], self.end[row]) = (DEAD, DEAD);
         } else if is_taken {
-            (self.t[row], self.error[row], self.end[row], self.spot[row]) = (t, error, t + error, spot.0);
+            (self.t[row], self.error[row], self.end[row]) = (t, error, t + error);
+            (self.spot[row], self.id[row]) = (spot.0, spot.id(hierarchy));
         }
     }
 
@@ -578,8 +592,9 @@ impl Packet {
         row: usize,
         candidate: &Candidate<F>,
         taken: F::Mask,
-        spot: Spot,
+        (spot, id): (Spot, u32),
     ) {
+        self.is_changed = true;
         let Candidate { t, error, .. } = *candidate;
         if ANY {
             let dead = F::select(taken, F::splat(DEAD), F::load(&self.t[row..]));
@@ -590,8 +605,10 @@ impl Packet {
         F::select(taken, t, F::load(&self.t[row..])).store(&mut self.t[row..]);
         F::select(taken, error, F::load(&self.error[row..])).store(&mut self.error[row..]);
         F::select(taken, t + error, F::load(&self.end[row..])).store(&mut self.end[row..]);
-        let spots = F::select_ids(taken, F::splat_ids(spot.0), F::load_ids(&self.spot[row..]));
-        F::store_ids(spots, &mut self.spot[row..]);
+        for (column, word) in [(&mut self.spot, spot.0), (&mut self.id, id)] {
+            let words = F::select_ids(taken, F::splat_ids(word), F::load_ids(&column[row..]));
+            F::store_ids(words, &mut column[row..]);
+        }
     }
 
     #[inline(always)]

@@ -47,6 +47,7 @@ impl Ray {
         };
         let axes = axes_from(third);
         let backwards = direction.map(|component| component < 0.0);
+        let t_per_z = 1.0 / direction[third];
         let least = sizes[third] * LEAST_COMPONENT;
         let farthest = Lanes::max(Lanes::max(origin[0].abs(), origin[1].abs()), origin[2].abs());
         let padding = (hierarchy.extent + farthest) * PADDING;
@@ -65,8 +66,8 @@ impl Ray {
                 1.0 / if backwards[axis] { -size } else { size }
             }),
             axes,
-            shear: [direction[axes[0]] / direction[third], direction[axes[1]] / direction[third]],
-            t_per_z: 1.0 / direction[third],
+            shear: [direction[axes[0]] * t_per_z, direction[axes[1]] * t_per_z],
+            t_per_z,
             a: direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2],
             padding,
             departure: rays.departure.get(row).copied().unwrap_or(super::NOWHERE),
