@@ -3,14 +3,17 @@
 //! Data flows one way:
 //!
 //! ```text
-//! load  →  scene  →  reference  →  film
+//! load  →  scene  →  prepare  →  wavefront (traverse (kernel (lanes)))  →  film
 //! ```
 //!
 //! - [`load`] reads a scene file and ends in a [`scene::Scene`] or in an error that names file, line and column;
 //! - [`scene`] is plain data in the user's units;
-//! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that faster engines are checked against;
+//! - [`prepare`] makes of it what the engine runs on: geometry in structure of arrays under one tree, and the plan of what the
+//!   scene needs;
+//! - [`wavefront`] traces it: rays in queues, worked through in stages. `traverse` walks them through the tree, `kernel` has
+//!   the tests of rays against primitives, a formula a file, and [`lanes`] makes width a type;
+//! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
 //! - [`film`] holds sample positions, pixels and picture files;
-//! - [`lanes`] knows the instruction sets that the program is built for and runs on;
 //! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
 //!
 //! ```no_run

@@ -1,0 +1,301 @@
+//! The rays of a packet against what is in a leaf.
+
+use super::super::candidate::{self, Candidate, Start, View};
+use super::super::exact::{self, Spot};
+use super::super::{Counts, DEAD, NOTHING};
+use super::{Columns, PACKET, Packet};
+use crate::kernel::RaySpace;
+use crate::kernel::polygon::Outline;
+use crate::kernel::sphere::Line;
+use crate::lanes::{Mask, Single, Vector};
+use crate::prepare::bvh::Node;
+use crate::prepare::{BLOCK, Hierarchy, Place};
+
+impl Packet {
+    /// Tests what is in a leaf, against every group from the given one on whose rays meet its box.
+    #[inline(always)]
+    pub(super) fn visit_leaf<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        leaf: Place,
+        (node, slot): (&Node, u8),
+        (first_group, mask): (u8, F::Mask),
+        counts: &mut Counts,
+    ) {
+        let mut group = first_group;
+        let mut mask = mask;
+        loop {
+            let bits = mask.bits();
+            if bits != 0 {
+                let row = group as usize * F::WIDTH;
+                let used = bits.count_ones() as usize;
+                match leaf {
+                    Place::Triangles(index) => {
+                        self.test_triangles::<F, DEPARTING, ANY>(hierarchy, index, row, (mask, used), counts);
+                    }
+                    Place::Spheres(index) => {
+                        self.test_spheres::<F, DEPARTING, ANY>(hierarchy, index, row, (mask, used), counts);
+                    }
+                    Place::Polygons(first, count) => {
+                        for index in first..first + count {
+                            self.test_polygon::<F, DEPARTING, ANY>(
+                                hierarchy,
+                                index,
+                                row,
+                                (mask, used),
+                                counts,
+                            );
+                        }
+                    }
+                    Place::Node(_) => {}
+                }
+            }
+            group += 1;
+            if group as usize * F::WIDTH >= PACKET {
+                return;
+            }
+            mask = self.group_enters::<F>(node, slot, group, counts);
+        }
+    }
+
+    #[inline(always)]
+    fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        index: usize,
+        row: usize,
+        (mask, used): (F::Mask, usize),
+        counts: &mut Counts,
+    ) {
+        let block = &hierarchy.triangles[index];
+        let (space, padding) = (self.space::<F>(row), F::load(&self.padding[row..]));
+        for lane in 0..BLOCK {
+            let id = block.ids[lane];
+            if id == NOTHING {
+                return; // the others are empty too
+            }
+            if ANY && !hierarchy.casts_shadow(id) {
+                continue;
+            }
+            let vertices =
+                [0, 1, 2].map(|vertex| self.axes.map(|axis| F::splat(block.vertices[vertex][axis][lane])));
+            let start = self.start::<F, DEPARTING>(row, id);
+            let sizes = [F::splat(block.slack[lane]), F::splat(block.double_area[lane])];
+            let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
+            counts.triangles.add(F::WIDTH, used);
+            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::triangle(index, lane), id));
+        }
+    }
+
+    #[inline(always)]
+    fn test_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        index: usize,
+        row: usize,
+        (mask, used): (F::Mask, usize),
+        counts: &mut Counts,
+    ) {
+        let block = &hierarchy.spheres[index];
+        let (line, padding) = (self.line::<F>(row), F::load(&self.padding[row..]));
+        for lane in 0..BLOCK {
+            let id = block.ids[lane];
+            if id == NOTHING {
+                return; // the others are empty too
+            }
+            if ANY && !hierarchy.casts_shadow(id) {
+                continue;
+            }
+            let center = Vector::splat(block.centers.map(|column| column[lane]));
+            let start = self.start::<F, DEPARTING>(row, id);
+            let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
+            let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
+            counts.spheres.add(F::WIDTH, used);
+            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::sphere(index, lane), id));
+        }
+    }
+
+    #[inline(always)]
+    fn test_polygon<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        index: usize,
+        row: usize,
+        (mask, used): (F::Mask, usize),
+        counts: &mut Counts,
+    ) {
+        let face = &hierarchy.polygons[index];
+        if ANY && !hierarchy.casts_shadow(face.id) {
+            return;
+        }
+        let zero = F::splat(0.0);
+        let space = self.space::<F>(row);
+        let first = face.first_corner as usize;
+        let corner = |index: usize| space.see(self.axes.map(|axis| F::splat(hierarchy.corners[axis][index])));
+        let mut outline = Outline::<F>::new();
+        let mut from = corner(first);
+        for index in first + 1..=first + face.edges as usize {
+            let to = corner(index);
+            outline.add_edge(&from, &to, zero);
+            from = to;
+        }
+        counts.polygons.calls += u64::from(face.edges);
+        counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
+        counts.polygons.used += u64::from(face.edges) * used as u64;
+        if !DEPARTING && !(outline.odd & mask).any() {
+            return;
+        }
+        let view = View { space, line: self.line(row), padding: F::load(&self.padding[row..]) };
+        let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
+        let start = self.start::<F, DEPARTING>(row, face.id);
+        let candidate =
+            candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
+        self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::polygon(index), face.id));
+    }
+
+    /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See [`exact`] for those
+    /// lanes in which f32 cannot tell.
+    #[inline(always)]
+    fn offer<F: Single, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        row: usize,
+        candidate: &Candidate<F>,
+        mask: F::Mask,
+        (spot, id): (Spot, u32),
+    ) {
+        let Candidate { t, error, hit, unclear } = *candidate;
+        let mut departing = (unclear & mask).bits();
+        while departing != 0 {
+            let row = row + departing.trailing_zeros() as usize;
+            departing &= departing - 1;
+            self.offer_exact::<ANY>(hierarchy, row, spot);
+        }
+        let hit = hit & mask;
+        if !hit.any() {
+            return;
+        }
+        let nearest = F::load(&self.t[row..]);
+        let (closer, unclear);
+        if ANY {
+            closer = hit & (t + error).lt(nearest);
+            unclear = hit & !closer & !(t - error).ge(nearest);
+        } else {
+            let (nearest_error, end) = (F::load(&self.error[row..]), F::load(&self.end[row..]));
+            closer = hit & (t + error).lt(nearest - nearest_error);
+            unclear = hit & !closer & !(t - error).gt(end);
+        }
+        let mut bits = unclear.bits();
+        if bits != 0 {
+            let mut ts = [0.0; 16];
+            t.store(&mut ts);
+            let mut is_taken = [0.0; 16];
+            while bits != 0 {
+                let lane = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                is_taken[lane] =
+                    f32::from(u8::from(self.decide::<ANY>(hierarchy, row + lane, ts[lane], spot)));
+            }
+            self.take::<F, ANY>(row, candidate, closer | F::load(&is_taken).gt(F::splat(0.0)), (spot, id));
+        } else if closer.any() {
+            self.take::<F, ANY>(row, candidate, closer, (spot, id));
+        }
+    }
+
+    fn exact(&self, row: usize) -> exact::Line {
+        let [origin, origin_low, direction] = [&self.origin, &self.origin_low, &self.direction]
+            .map(|columns| columns.each_ref().map(|column| column[row]));
+        exact::Line::new(origin, origin_low, direction, self.departure[row])
+    }
+
+    /// Takes in what a ray meets that starts next to it.
+    #[cold]
+    fn offer_exact<const ANY: bool>(&mut self, hierarchy: &Hierarchy, row: usize, spot: Spot) {
+        if self.t[row] < 0.0 {
+            return;
+        }
+        let Some(t) = self.exact(row).departs_to(hierarchy, spot) else { return };
+        let error = t * exact::ROUNDED;
+        self.is_changed = true;
+        let is_taken = if ANY {
+            t + error < self.t[row]
+                || (t - error < self.t[row] && self.decide::<ANY>(hierarchy, row, t, spot))
+        } else {
+            t + error < self.t[row] - self.error[row]
+                || (t - error <= self.end[row] && self.decide::<ANY>(hierarchy, row, t, spot))
+        };
+        if is_taken && ANY {
+            (self.t[row], self.end[row]) = (DEAD, DEAD);
+        } else if is_taken {
+            (self.t[row], self.error[row], self.end[row]) = (t, error, t + error);
+            (self.spot[row], self.id[row]) = (spot.0, spot.id(hierarchy));
+        }
+    }
+
+    /// Decides in f64 for one ray.
+    #[cold]
+    fn decide<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, t: f32, spot: Spot) -> bool {
+        let nearest = Spot(self.spot[row]);
+        if ANY {
+            self.exact(row).is_before_light(hierarchy, spot, t, self.t[row])
+        } else if nearest == Spot::NOTHING {
+            t < self.t[row]
+        } else {
+            self.exact(row).is_nearer(hierarchy, (spot, t), (nearest, self.t[row]))
+        }
+    }
+
+    #[inline(always)]
+    fn take<F: Single, const ANY: bool>(
+        &mut self,
+        row: usize,
+        candidate: &Candidate<F>,
+        taken: F::Mask,
+        (spot, id): (Spot, u32),
+    ) {
+        self.is_changed = true;
+        let Candidate { t, error, .. } = *candidate;
+        if ANY {
+            let dead = F::select(taken, F::splat(DEAD), F::load(&self.t[row..]));
+            dead.store(&mut self.t[row..]);
+            dead.store(&mut self.end[row..]);
+            return;
+        }
+        F::select(taken, t, F::load(&self.t[row..])).store(&mut self.t[row..]);
+        F::select(taken, error, F::load(&self.error[row..])).store(&mut self.error[row..]);
+        F::select(taken, t + error, F::load(&self.end[row..])).store(&mut self.end[row..]);
+        for (column, word) in [(&mut self.spot, spot.0), (&mut self.id, id)] {
+            let words = F::select_ids(taken, F::splat_ids(word), F::load_ids(&column[row..]));
+            F::store_ids(words, &mut column[row..]);
+        }
+    }
+
+    #[inline(always)]
+    fn space<F: Single>(&self, row: usize) -> RaySpace<F> {
+        RaySpace {
+            origin: self.axes.map(|axis| F::load(&self.origin[axis][row..])),
+            shear: [F::load(&self.shear[0][row..]), F::load(&self.shear[1][row..])],
+            t_per_z: F::load(&self.t_per_z[row..]),
+        }
+    }
+
+    #[inline(always)]
+    fn line<F: Single>(&self, row: usize) -> Line<F> {
+        Line {
+            origin: self.origin.map_lanes(row),
+            direction: self.direction.map_lanes(row),
+            a: F::load(&self.a[row..]),
+            inverse_a: F::load(&self.inverse_a[row..]),
+        }
+    }
+
+    /// Which rays of a group start on a primitive, and which go inside what they start on.
+    #[inline(always)]
+    fn start<F: Single, const DEPARTING: bool>(&self, row: usize, id: u32) -> Start<F> {
+        if !DEPARTING {
+            return Start { own: F::first(0), inward: F::first(0) };
+        }
+        let departure = F::load_ids(&self.departure[row..]);
+        Start { own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)), inward: F::ids_odd(departure) }
+    }
+}
