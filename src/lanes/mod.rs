@@ -1,6 +1,6 @@
 //! Vector lanes: width as a type. The only place that names `wide`, an instruction set or a width.
 //!
-//! [`Single`] stands for some f32 side by side, [`Double`] for f64; one lane is a plain `f32` or `f64`, and the same
+//! `Single` stands for some f32 side by side, `Double` for f64; one lane is a plain `f32` or `f64`, and the same
 //! source runs at every width. Lanes have the operations whose bits are equal at every width and in every build, and no
 //! others: + − × ÷ √, comparisons, selection and bits. There is no fused multiply-add, no estimate of a reciprocal and no
 //! sum across lanes.

@@ -4,14 +4,14 @@
 //!
 //! | stage | from | to |
 //! |---|---|---|
-//! | [`generate`] | samples | rays |
+//! | `generate` | samples | rays |
 //! | intersect (`traverse::closest`) | rays | hits |
-//! | [`surface`] | rays, hits | surfaces; what misses sees the background |
-//! | [`absorb`] | surfaces | attenuations |
-//! | [`illuminate`] | surfaces, a light | shadow rays; once they are traced, local light |
+//! | `surface` | rays, hits | surfaces; what misses sees the background |
+//! | `absorb` | surfaces | attenuations |
+//! | `illuminate` | surfaces, a light | shadow rays; once they are traced, local light |
 //! | occlude (`traverse::occluded`) | shadow rays | which of them are occluded |
-//! | [`spawn`] | surfaces | reflected and refracted rays, one level deeper |
-//! | [`resolve`] | local light, what the children see | what the rays see |
+//! | `spawn` | surfaces | reflected and refracted rays, one level deeper |
+//! | `resolve` | local light, what the children see | what the rays see |
 //!
 //! The children of a batch are traced to the end before the next batch, so the memory is that of one batch a depth, however
 //! many rays there are. What an image is made of does not depend on batches, tiles, threads or lanes: hits do not (see
