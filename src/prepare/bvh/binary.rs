@@ -66,6 +66,7 @@ fn grow(references: &mut [Reference], forks: &mut [Fork], depth: u32, costs: &Co
     let Some((fork, forks)) = forks.split_first_mut() else { return LeastCosts::of_leaf(as_leaf) };
     let deep = is_deep(depth, references.len());
     let middle = if deep { halve(references, &spread) } else { part(references, &spread, costs) };
+    debug_assert!((1..references.len()).contains(&middle));
     let parallel = references.len() >= PARALLEL;
     let (left, right) = references.split_at_mut(middle);
     let (left_forks, right_forks) = forks.split_at_mut(middle - 1);
@@ -84,4 +85,27 @@ fn grow(references: &mut [Reference], forks: &mut [Fork], depth: u32, costs: &Co
 fn is_deep(depth: u32, count: usize) -> bool {
     let left_over = count - 1;
     depth + 1 + left_over.next_power_of_two().ilog2() > DEPTH_LIMIT
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{collapse::collapse, sah_cost};
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn the_tree_costs_what_the_choices_promise() {
+        let costs = Costs { node: 1.5, block: [1.0, 2.0, 4.0], room: [4.0, 4.0, 2.0], largest_leaf: 6 };
+        let kinds = [Kind::Sphere, Kind::Triangle, Kind::Triangle, Kind::Polygon];
+        let items = (0..500_u16).zip(kinds.into_iter().cycle()).map(|(index, kind)| {
+            let low = Vec3::new(f32::from(index % 7), f32::from(index % 11), f32::from(index % 13));
+            Item { bounds: Bounds { low, high: low + 0.3 }, kind, weight: index % 5 }
+        });
+        let items: Vec<Item> = items.collect();
+        let mut tree = build(&items, &costs);
+        let bounds = tree.forks[0].bounds;
+        let promised = grow(&mut tree.references, &mut tree.forks, 0, &costs).as_one_child();
+        let cost = sah_cost(&collapse(&tree), &costs) * bounds.half_area();
+        assert!((cost / promised - 1.0).abs() < 1e-12, "{cost}, promised {promised}");
+    }
 }

@@ -18,6 +18,11 @@ impl LeastCosts {
     pub(super) fn of_leaf(cost: f64) -> Self {
         Self([cost; WIDTH - 1])
     }
+
+    #[cfg(test)]
+    pub(super) fn as_one_child(&self) -> f64 {
+        self.0[0]
+    }
 }
 
 /// The cheapest ways for a group, in 4 bits each.

@@ -1,4 +1,4 @@
-//! From the binary tree to nodes of eight children, as its [`choices`](super::choice) say.
+//! From the binary tree to nodes of eight children, as its choices say.
 
 use super::binary::{BinaryTree, Fork};
 use super::{Bounds, Child, Leaf, Node, Tree, WIDTH, word};
@@ -66,8 +66,8 @@ impl Writer<'_> {
     /// Spreads a run over up to `limit` children.
     fn spread(&self, run: Run, limit: usize, children: &mut Children) {
         let split = self.fork(run).and_then(|fork| {
-            let ways = (2..=limit).rev().map(|count| (count, fork.choices.left_of(count)));
-            ways.into_iter().find(|&(_, left)| left > 0).map(|way| (way, fork.left as usize))
+            let mut ways = (2..=limit).rev().map(|count| (count, fork.choices.left_of(count)));
+            ways.find(|&(_, left)| left > 0).map(|way| (way, fork.left as usize))
         });
         let Some(((count, left), middle)) = split else {
             children.runs[children.count] = Some(run);
