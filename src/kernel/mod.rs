@@ -9,6 +9,8 @@ pub(crate) mod bounds;
 pub(crate) mod polygon;
 mod ray_space;
 pub(crate) mod sphere;
+#[cfg(test)]
+pub(crate) mod tests;
 pub(crate) mod triangle;
 
 pub(crate) use ray_space::{RaySpace, axes_from};

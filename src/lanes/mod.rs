@@ -9,6 +9,8 @@
 pub(crate) mod cpu;
 mod isa;
 mod scalar;
+#[cfg(test)]
+mod tests;
 mod vector;
 mod wide_types;
 mod widths;

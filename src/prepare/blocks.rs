@@ -10,7 +10,7 @@ pub(crate) const BLOCK: usize = 4;
 /// |---|---|
 /// | 0–143 | `vertices`: first, second and third; x, y and z; a lane a triangle |
 /// | 144–159 | `slack` |
-/// | 160–175 | `double_area` |
+/// | 160–175 | `error_area` |
 /// | 176–191 | `ids` |
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
@@ -18,7 +18,8 @@ pub(crate) struct TriangleBlock {
     pub(crate) vertices: [[[f32; BLOCK]; 3]; 3],
     /// What is nearer to the plane than this touches it, times twice the area; see [`touch_distance`].
     pub(crate) slack: [f32; BLOCK],
-    pub(crate) double_area: [f32; BLOCK],
+    /// Twice the area, and for needles more: what the error of t is in proportion to.
+    pub(crate) error_area: [f32; BLOCK],
     pub(crate) ids: [u32; BLOCK],
 }
 
@@ -73,11 +74,12 @@ impl TriangleBlock {
     pub(super) const EMPTY: Self = Self {
         vertices: [[[0.0; BLOCK]; 3]; 3],
         slack: [0.0; BLOCK],
-        double_area: [0.0; BLOCK],
+        error_area: [0.0; BLOCK],
         ids: [u32::MAX; BLOCK],
     };
 
-    pub(super) fn set(&mut self, lane: usize, vertices: [Vec3; 3], id: u32) {
+    /// `scene_extent` is the largest coordinate of all primitives.
+    pub(super) fn set(&mut self, lane: usize, vertices: [Vec3; 3], id: u32, scene_extent: f32) {
         for (vertex, point) in vertices.into_iter().enumerate() {
             for axis in 0..3 {
                 self.vertices[vertex][axis][lane] = point[axis];
@@ -86,8 +88,12 @@ impl TriangleBlock {
         let [a, b, c] = vertices;
         let extent = vertices.map(|vertex| vertex.abs().max_element()).into_iter().fold(0.0, f32::max);
         let size = [a - b, b - c, c - a].map(Vec3::length).into_iter().fold(0.0, f32::max);
-        self.double_area[lane] = (b - a).cross(c - a).length();
-        self.slack[lane] = touch_distance(extent, size) * self.double_area[lane];
+        let double_area = (b - a).cross(c - a).length();
+        // The kernel's error of a distance from the plane is 6u·(L + s²/h) by measurement, with s the longest edge and h the
+        // height above it; and s²/h = s³ / double area.
+        let cube = size * size * size;
+        self.slack[lane] = touch_distance(extent, size) * double_area + 6.0 * UNIT_ROUNDOFF * cube;
+        self.error_area[lane] = double_area + cube / scene_extent;
         self.ids[lane] = id;
     }
 }

@@ -162,7 +162,7 @@ impl Hierarchy {
                     let triangle = geometry.triangles[source.index as usize];
                     let vertices =
                         triangle.vertices.map(|index| scale.position(geometry.vertices[index as usize]));
-                    self.triangles[first].set(lane, vertices, triangle.id.0);
+                    self.triangles[first].set(lane, vertices, triangle.id.0, self.extent);
                 }
                 Kind::Polygon => self.add_polygon(source, geometry, scale),
             }

@@ -6,10 +6,10 @@
 //! rounding left out. Together they keep a surface from shadowing or reflecting itself or its neighbours, without a
 //! tolerance that a scene could be too small or too large for.
 
-use crate::kernel::RaySpace;
 use crate::kernel::polygon::{self, Outline};
 use crate::kernel::sphere::{self, Line};
 use crate::kernel::triangle;
+use crate::kernel::{RaySpace, UNIT_ROUNDOFF};
 use crate::lanes::{Mask, Single, Vector};
 
 /// Where a ray starts.
@@ -54,7 +54,7 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
     space: &RaySpace<F>,
     padding: F,
     vertices: [[F; 3]; 3],
-    [slack, double_area]: [F; 2],
+    [slack, error_area]: [F; 2],
     start: Start<F>,
 ) -> Candidate<F> {
     let zero = F::splat(0.0);
@@ -73,8 +73,8 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
     let t = meeting.t(space);
     let hit = meeting.inside & t.gt(zero);
     let hit = if DEPARTING { hit & !touches & !start.own } else { hit };
-    // cos θ·|d| = |seen area·d_z| / area.
-    let error = padding * double_area * (space.t_per_z / meeting.seen_double_area).abs();
+    // cos θ·|d| = |seen area·d_z| / area. Seen so nearly edge-on that the area may be nothing but rounding, t may be anything.
+    let error = padding * error_area * space.t_per_z.abs() / meeting.least_seen_area(padding, zero);
     Candidate { t, error, hit, unclear: touches }
 }
 
@@ -117,7 +117,9 @@ pub(super) fn polygon<F: Single, const DEPARTING: bool>(
     let corner_ts = [outline.least_z * view.space.t_per_z, outline.largest_z * view.space.t_per_z];
     let meeting = polygon::meet_plane([view.line.origin, view.line.direction], plane, corner_ts, zero);
     let hit = outline.odd & meeting.meets & meeting.t.gt(zero);
-    let error = view.padding / meeting.slope.abs();
+    // Of the slope too, some roundings are not to be relied on.
+    let slope = (meeting.slope.abs() - F::splat(8.0 * UNIT_ROUNDOFF) * view.line.a).max(zero);
+    let error = view.padding / slope;
     if !DEPARTING {
         return Candidate { t: meeting.t, error, hit, unclear: F::first(0) };
     }

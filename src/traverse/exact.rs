@@ -232,7 +232,7 @@ impl Line {
         [closest_t - half_t, closest_t + half_t].map(|t| Hit { t, cosine })
     }
 
-    /// Where the line meets the plane, kept between its vertices for a plane seen edge-on.
+    /// Where the line meets the plane.
     fn triangle(&self, vertices: [DVec3; 3]) -> Hit {
         let [a, b, c] = vertices;
         let normal = (b - a).cross(c - a);
@@ -245,16 +245,23 @@ impl Line {
     }
 
     fn plane(&self, point: DVec3, normal: DVec3, length: f64, corners: impl Iterator<Item = DVec3>) -> Hit {
-        let third = self.direction.abs().max_position();
-        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut low, mut high) = (point, point);
         for corner in corners {
-            let t = (corner[third] - self.origin[third]) / self.direction[third];
-            (least, largest) = (if t < least { t } else { least }, if t > largest { t } else { largest });
+            (low, high) = (low.min(corner), high.max(corner));
+        }
+        // No point of the face is before its box or beyond: what a plane seen nearly edge-on is kept between, and what keeps
+        // the order of hits from contradicting that of boxes.
+        let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+        for axis in (0..3).filter(|&axis| self.direction[axis] != 0.0) {
+            let one = (low[axis] - self.origin[axis]) / self.direction[axis];
+            let other = (high[axis] - self.origin[axis]) / self.direction[axis];
+            let (near, far) = if one < other { (one, other) } else { (other, one) };
+            (enter, leave) = (if near > enter { near } else { enter }, if far < leave { far } else { leave });
         }
         let slope = normal.dot(self.direction);
         let t = normal.dot(point - self.origin) / slope;
-        let t = if t >= least { t } else { least };
-        let t = if t <= largest { t } else { largest };
+        let t = if t <= leave { t } else { leave };
+        let t = if t >= enter { t } else { enter };
         Hit { t, cosine: slope.abs() / (length * self.direction.length()) }
     }
 }

@@ -14,6 +14,8 @@ mod counts;
 mod exact;
 mod packet;
 mod single;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use counts::{Counts, LaneUse};
 

@@ -287,7 +287,7 @@ impl Target<'_> {
             let vertices =
                 [0, 1, 2].map(|vertex| ray.axes.map(|axis| F::load(&block.vertices[vertex][axis][first..])));
             let start = ray.start(F::load_ids(&block.ids[first..]));
-            let sizes = [F::load(&block.slack[first..]), F::load(&block.double_area[first..])];
+            let sizes = [F::load(&block.slack[first..]), F::load(&block.error_area[first..])];
             let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
             counts.triangles.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
             self.offer_lanes::<F, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));

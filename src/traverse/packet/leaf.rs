@@ -80,7 +80,7 @@ impl Packet {
             let vertices =
                 [0, 1, 2].map(|vertex| self.axes.map(|axis| F::splat(block.vertices[vertex][axis][lane])));
             let start = self.start::<F, DEPARTING>(row, id);
-            let sizes = [F::splat(block.slack[lane]), F::splat(block.double_area[lane])];
+            let sizes = [F::splat(block.slack[lane]), F::splat(block.error_area[lane])];
             let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
             counts.triangles.add(F::WIDTH, used);
             self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::triangle(index, lane), id));

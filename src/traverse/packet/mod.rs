@@ -167,9 +167,9 @@ impl Packet {
         for row in (0..PACKET).step_by(F::WIDTH) {
             let origin = self.origin.map_lanes::<F>(row);
             let direction = self.direction.map_lanes::<F>(row);
+            let a = direction.dot(direction);
+            a.store(&mut self.a[row..]);
             if !hierarchy.spheres.is_empty() {
-                let a = direction.dot(direction);
-                a.store(&mut self.a[row..]);
                 (one / a).store(&mut self.inverse_a[row..]);
             }
             let third = [direction.x, direction.y, direction.z][self.axes[2]];
