@@ -34,7 +34,7 @@ impl<L: Lanes> RaySpace<L> {
     /// A point given in the ray's order of axes.
     #[inline(always)]
     pub(crate) fn see(&self, point: [L; 3]) -> Seen<L> {
-        let [x, y, z] = [0, 1, 2].map(|axis| point[axis] - self.origin[axis]);
+        let [x, y, z] = [point[0] - self.origin[0], point[1] - self.origin[1], point[2] - self.origin[2]];
         Seen { x: x - self.shear[0] * z, y: y - self.shear[1] * z, z }
     }
 }

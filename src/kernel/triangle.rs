@@ -25,7 +25,7 @@ pub(crate) struct Meeting<L: Lanes> {
 /// Vertices are in the ray's order of axes.
 #[inline(always)]
 pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) -> Meeting<L> {
-    let [a, b, c] = vertices.map(|vertex| ray.see(vertex));
+    let [a, b, c] = [ray.see(vertices[0]), ray.see(vertices[1]), ray.see(vertices[2])];
     let (u, v, w) = (cross(&b, &c), cross(&c, &a), cross(&a, &b));
     let area = u + v + w;
     let volume = u * a.z + v * b.z + w * c.z;
@@ -48,8 +48,9 @@ impl<L: Lanes> Meeting<L> {
     /// so no edge is longer than twice the largest coordinate.
     #[inline(always)]
     pub(crate) fn least_seen_area(&self, off: L, zero: L) -> L {
-        let [a, b, c] = self.corners.map(|corner| corner.x.abs().max(corner.y.abs()));
-        let reach = a.max(b).max(c) * off;
+        let [a, b, c] = &self.corners;
+        let reach = |corner: &Seen<L>| corner.x.abs().max(corner.y.abs());
+        let reach = reach(a).max(reach(b)).max(reach(c)) * off;
         let rounding = reach + reach + reach + reach + reach + reach;
         (self.seen_double_area.abs() - rounding).max(zero)
     }

@@ -77,8 +77,12 @@ impl Packet {
             if ANY && !hierarchy.casts_shadow(id) {
                 continue;
             }
-            let vertices =
-                [0, 1, 2].map(|vertex| self.axes.map(|axis| F::splat(block.vertices[vertex][axis][lane])));
+            let [x, y, z] = self.axes;
+            let [a, b, c] = &block.vertices;
+            let corner = |of: &[[f32; BLOCK]; 3]| {
+                [F::splat(of[x][lane]), F::splat(of[y][lane]), F::splat(of[z][lane])]
+            };
+            let vertices = [corner(a), corner(b), corner(c)];
             let start = self.start::<F, DEPARTING>(row, id);
             let sizes = [F::splat(block.slack[lane]), F::splat(block.error_area[lane])];
             let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
@@ -131,7 +135,8 @@ impl Packet {
         let zero = F::splat(0.0);
         let space = self.space::<F>(row);
         let first = face.first_corner as usize;
-        let corner = |index: usize| space.see(self.axes.map(|axis| F::splat(hierarchy.corners[axis][index])));
+        let [x, y, z] = self.axes.map(|axis| &hierarchy.corners[axis][..]);
+        let corner = |index: usize| space.see([F::splat(x[index]), F::splat(y[index]), F::splat(z[index])]);
         let mut outline = Outline::<F>::new();
         let mut from = corner(first);
         for index in first + 1..=first + face.edges as usize {
