@@ -111,6 +111,27 @@ fn the_command_line_goes_before_the_scene() {
 }
 
 #[test]
+fn explain_says_what_will_run() {
+    let said = |scene: &str, more: &[&str]| {
+        let path = crate::support::root().join("scenes").join(scene);
+        let output = wavelane(&[&["explain", path.to_str().unwrap()], more].concat());
+        assert_exit(&output, 0);
+        stdout(&output)
+    };
+    let glass = said("glass.toml", &[]);
+    for part in ["absorb      exponential", "RefractionQueue", "sphere, polygon", "8 spheres"] {
+        assert!(glass.contains(part), "{part} is not in\n{glass}");
+    }
+    let isometric = said("isometric.toml", &[]);
+    for part in ["absorb", "spawn", "RefractionQueue", "each further depth"] {
+        assert!(!isometric.contains(part), "{part} is in\n{isometric}");
+    }
+    let report: serde_json::Value = serde_json::from_str(&said("glass.toml", &["--json", "-"])).unwrap();
+    assert_eq!((&report["plan"]["refraction"], &report["plan"]["triangles"]), (&true.into(), &0.into()));
+    assert_exit(&wavelane(&["explain", "absent.toml"]), 3);
+}
+
+#[test]
 fn the_report_says_what_the_wavefront_engine_did() {
     let place = Workplace::new();
     for (options, engine, lanes) in [
