@@ -2,13 +2,12 @@
 
 use crate::film::{Image, Region};
 use crate::lanes::{self, Single, Width};
-use crate::measure::WavefrontReport;
 use crate::prepare::{PrepareError, Prepared};
 use crate::rays::RayCounts;
 use crate::reference::Tracer;
 use crate::scene::Scene;
 use crate::traverse::RUN;
-use crate::wavefront::{Statistics, TileGrid, TilePixels, Worker};
+use crate::wavefront::{Statistics, TileGrid, TilePixels, WavefrontReport, Worker};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};

@@ -3,9 +3,7 @@
 mod agreement;
 mod difference;
 mod report;
-mod wavefront;
 
 pub use agreement::{Agreement, Distance};
 pub use difference::{Difference, heat_map};
-pub use report::{RenderReport, Seconds};
-pub use wavefront::{Counters, LanesReport, MemoryReport, StageReport, WavefrontReport};
+pub use report::{RenderReport, Seconds, peak_resident_bytes};

@@ -1,8 +1,8 @@
 //! What a run did and how long it took, as JSON.
 
-use super::WavefrontReport;
 use crate::lanes::Isa;
 use crate::rays::RayCounts;
+use crate::wavefront::WavefrontReport;
 use serde::Serialize;
 
 /// The report of one render.
@@ -38,6 +38,8 @@ pub struct RenderReport {
     pub rays: RayCounts,
     /// Wall-clock time by phase.
     pub seconds: Seconds,
+    /// The most memory that the process has had at one time; none where the system does not say.
+    pub peak_resident_bytes: Option<u64>,
     /// What the stages of the wavefront engine did; absent for the reference.
     #[serde(flatten)]
     pub wavefront: Option<WavefrontReport>,
@@ -56,4 +58,13 @@ pub struct Seconds {
     pub write: f64,
     /// From the first to the last.
     pub total: f64,
+}
+
+/// The most memory that this process has had at one time, as Linux says it.
+#[must_use]
+pub fn peak_resident_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
 }

@@ -10,14 +10,16 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    /// Ids below this can be had.
-    pub(crate) const LIMIT: u32 = 1 << 30;
+    /// Ids below this can be had: `traverse` finds a primitive by a word that has 28 bits for its block.
+    pub(crate) const LIMIT: u32 = 1 << 28;
+
+    const INDEX: u32 = (1 << 30) - 1;
 
     pub(super) fn new(geometry: &Geometry) -> Result<Self, PrepareError> {
         let spheres = geometry.spheres.iter().map(|sphere| sphere.id);
         let triangles = geometry.triangles.iter().map(|triangle| triangle.id);
         let polygons = geometry.polygons.iter().map(|polygon| polygon.id);
-        let last = spheres.clone().chain(triangles.clone()).chain(polygons.clone()).map(|id| id.0).max();
+        let last = geometry.materials().map(|(id, _)| id.0).max();
         let count = last.map_or(0, |last| u64::from(last) + 1);
         if count > u64::from(Self::LIMIT) {
             return Err(PrepareError::TooMany { count });
@@ -43,7 +45,7 @@ impl Directory {
             1 => Kind::Triangle,
             _ => Kind::Polygon,
         };
-        (kind, (entry & (Self::LIMIT - 1)) as usize)
+        (kind, (entry & Self::INDEX) as usize)
     }
 
     pub(crate) fn bytes(&self) -> usize {

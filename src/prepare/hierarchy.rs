@@ -273,13 +273,9 @@ fn largest_coordinate(bounds: Bounds) -> f32 {
 }
 
 fn shadowless(scene: &Scene) -> Vec<bool> {
-    let geometry = &scene.geometry;
-    let spheres = geometry.spheres.iter().map(|sphere| (sphere.id, sphere.material));
-    let triangles = geometry.triangles.iter().map(|triangle| (triangle.id, triangle.material));
-    let polygons = geometry.polygons.iter().map(|polygon| (polygon.id, polygon.material));
-    let ids = spheres
-        .chain(triangles)
-        .chain(polygons)
+    let ids = scene
+        .geometry
+        .materials()
         .filter(|(_, material)| !scene.materials[material.0 as usize].casts_shadow)
         .map(|(id, _)| id.0 as usize);
     let mut shadowless = Vec::new();

@@ -80,12 +80,8 @@ fn has_vertex_normals(geometry: &Geometry) -> bool {
 
 /// Materials of primitives that can be hit.
 fn used_materials(scene: &Scene) -> Vec<&Material> {
-    let geometry = &scene.geometry;
-    let spheres = geometry.spheres.iter().map(|sphere| sphere.material);
-    let triangles = geometry.triangles.iter().map(|triangle| triangle.material);
-    let polygons = geometry.polygons.iter().map(|polygon| polygon.material);
     let mut is_used = vec![false; scene.materials.len()];
-    for MaterialId(index) in spheres.chain(triangles).chain(polygons) {
+    for (_, MaterialId(index)) in scene.geometry.materials() {
         is_used[index as usize] = true;
     }
     scene

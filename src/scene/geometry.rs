@@ -113,6 +113,14 @@ impl Geometry {
         self.spheres.len() + self.triangles.len() + self.polygons.len()
     }
 
+    /// Id and material of every primitive that can be hit: spheres, then triangles, then polygons.
+    pub fn materials(&self) -> impl Iterator<Item = (PrimitiveId, MaterialId)> {
+        let spheres = self.spheres.iter().map(|sphere| (sphere.id, sphere.material));
+        let triangles = self.triangles.iter().map(|triangle| (triangle.id, triangle.material));
+        let polygons = self.polygons.iter().map(|polygon| (polygon.id, polygon.material));
+        spheres.chain(triangles).chain(polygons)
+    }
+
     /// Adds a sphere.
     ///
     /// # Errors

@@ -33,7 +33,7 @@ impl LaneUse {
         self.used += used as u64;
     }
 
-    /// Lanes in use in a call of `width` lanes, in the mean; none where nothing was called.
+    /// Lanes in use in a call, in the mean; none where nothing was called.
     pub(crate) fn mean(&self) -> Option<f64> {
         (self.calls > 0).then(|| self.used as f64 / self.calls as f64)
     }

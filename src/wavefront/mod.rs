@@ -26,6 +26,7 @@ mod illuminate;
 mod level;
 mod optics;
 mod queue;
+mod report;
 mod resolve;
 mod spawn;
 mod statistics;
@@ -36,7 +37,8 @@ mod worker;
 
 pub use explain::{Explanation, HierarchyPlan, StagePlan};
 pub use queue::{ColumnPlan, QueuePlan};
-pub(crate) use statistics::{Stage, Statistics};
+pub use report::{Counters, LanesReport, MemoryReport, StageReport, WavefrontReport};
+pub(crate) use statistics::Statistics;
 pub use trail::PixelRecord;
 pub use worker::DEFAULT_BATCH;
 pub(crate) use worker::{TileGrid, TilePixels, Worker};

@@ -17,7 +17,8 @@ use crate::prepare::Prepared;
 use crate::traverse::{self, DEAD, Ends, NOTHING, Rays};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rays of a batch. Their queues, some 150 bytes a ray and depth, are meant to stay in a core's second-level cache.
+/// Rays of a batch. Their queues, up to 330 bytes a ray at the depth at hand, are meant to stay near a core's second-level
+/// cache of 1 MiB or so.
 pub const DEFAULT_BATCH: usize = 4096;
 
 /// A region of the image as work for several workers.

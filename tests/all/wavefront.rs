@@ -4,11 +4,10 @@ use crate::support::{STILL_LIFE, render_region, render_with, root, scene, wavefr
 use wavelane::film::{Image, Region};
 use wavelane::lanes::Width;
 use wavelane::load::load;
-use wavelane::measure::{Counters, WavefrontReport};
 use wavelane::prepare::Prepared;
 use wavelane::render::{DEFAULT_BATCH, Engine};
 use wavelane::scene::Scene;
-use wavelane::wavefront::Explanation;
+use wavelane::wavefront::{Counters, Explanation, WavefrontReport};
 
 /// The scenes that come with the project, small, by name.
 fn example_scenes() -> Vec<(String, Scene)> {

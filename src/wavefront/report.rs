@@ -1,8 +1,8 @@
-//! What the stages of the wavefront engine did.
+//! What the stages did, as a report says it.
 
+use super::statistics::{Stage, Statistics};
 use crate::prepare::Prepared;
 use crate::traverse::LaneUse;
-use crate::wavefront::{Stage, Statistics};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -72,8 +72,6 @@ pub struct MemoryReport {
     pub queue_bytes_per_worker: usize,
     /// The hierarchy, with all that rays are tested against.
     pub hierarchy_bytes: usize,
-    /// The most memory that the process has had at one time; none where the system does not say.
-    pub peak_resident_bytes: Option<u64>,
 }
 
 impl WavefrontReport {
@@ -110,7 +108,6 @@ impl WavefrontReport {
             memory: MemoryReport {
                 queue_bytes_per_worker: queue_bytes,
                 hierarchy_bytes: prepared.hierarchy.bytes().total(),
-                peak_resident_bytes: peak_resident_bytes(),
             },
         }
     }
@@ -121,12 +118,4 @@ impl LanesReport {
         let in_use = lanes.mean()?;
         Some(Self { width: lanes.lanes as f64 / lanes.calls as f64, in_use })
     }
-}
-
-/// As Linux says it.
-fn peak_resident_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
 }
