@@ -61,6 +61,74 @@ impl Spot {
     fn place(self) -> (usize, usize) {
         ((self.0 >> 4) as usize, (self.0 >> 2 & 3) as usize)
     }
+
+    /// The primitive there, in f64.
+    fn shape(self, hierarchy: &Hierarchy) -> Shape {
+        let (index, lane) = self.place();
+        let point = |columns: [f32; 3]| DVec3::from(columns.map(f64::from));
+        match self.0 & 3 {
+            SPHERE => {
+                let block = &hierarchy.spheres[index];
+                Shape::Sphere {
+                    center: point(block.centers.map(|column| column[lane])),
+                    radius: f64::from(block.radii[lane]),
+                    id: block.ids[lane],
+                }
+            }
+            TRIANGLE => {
+                let vertices = hierarchy.triangles[index].vertices;
+                Shape::Triangle(vertices.map(|vertex| point(vertex.map(|column| column[lane]))))
+            }
+            _ => {
+                let face = &hierarchy.polygons[index];
+                let run = face.first_corner as usize..(face.first_corner + face.edges) as usize;
+                let corner = |corner| point([0, 1, 2].map(|axis| hierarchy.corners[axis][corner]));
+                Shape::Polygon {
+                    normal: hierarchy.polygon_normals[face.source as usize],
+                    corners: run.map(corner).collect(),
+                }
+            }
+        }
+    }
+}
+
+/// A primitive in f64.
+enum Shape {
+    Sphere { center: DVec3, radius: f64, id: u32 },
+    Triangle([DVec3; 3]),
+    Polygon { normal: DVec3, corners: Vec<DVec3> },
+}
+
+/// The nearest hit of a ray so far, or where hits end to be of interest.
+#[derive(Clone, Copy)]
+pub(super) struct Nearest {
+    pub(super) t: f32,
+    pub(super) error: f32,
+    pub(super) spot: Spot,
+}
+
+impl Nearest {
+    /// Whether a hit takes its place; if ANY, whether it is before the end. In f64 where f32 cannot tell.
+    #[inline(always)]
+    pub(super) fn yields_to<const ANY: bool>(
+        &self,
+        hierarchy: &Hierarchy,
+        line: impl FnOnce() -> Line,
+        (t, error, spot): (f32, f32, Spot),
+    ) -> bool {
+        if ANY {
+            let is_beyond = t - error >= self.t;
+            t + error < self.t || (!is_beyond && line().is_before_light(hierarchy, spot, t, self.t))
+        } else if t + error < self.t - self.error {
+            true
+        } else if t - error > self.t + self.error {
+            false
+        } else if self.spot == Spot::NOTHING {
+            t < self.t
+        } else {
+            line().is_nearer(hierarchy, (spot, t), (self.spot, self.t))
+        }
+    }
 }
 
 /// Error of a t that was computed in f64 and rounded to f32, as a share of it.
@@ -102,33 +170,22 @@ impl Line {
     #[cold]
     pub(super) fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         let bend = hierarchy.bend(self.departure >> 1) + hierarchy.bend(spot.id(hierarchy));
-        let (index, lane) = spot.place();
-        let point = |columns: [f32; 3]| DVec3::from(columns.map(f64::from));
-        match spot.0 & 3 {
-            SPHERE => {
-                let block = &hierarchy.spheres[index];
-                let center = point(block.centers.map(|column| column[lane]));
-                let radius = f64::from(block.radii[lane]);
+        match spot.shape(hierarchy) {
+            Shape::Sphere { center, radius, .. } => {
                 let extent = center.abs().max_element() + radius;
                 self.sphere(center, radius)
                     .into_iter()
                     .find_map(|hit| self.beyond_rounding(hit, extent, bend))
             }
-            TRIANGLE => {
-                let block = &hierarchy.triangles[index];
-                let vertices = block.vertices.map(|vertex| point(vertex.map(|column| column[lane])));
-                let hit = self.triangle(vertices);
-                let t = self.beyond_rounding(hit, extent_of(vertices.into_iter()), bend)?;
+            Shape::Triangle(vertices) => {
+                let extent = extent_of(vertices.into_iter());
+                let t = self.beyond_rounding(self.triangle(vertices), extent, bend)?;
                 self.is_in_triangle(vertices).then_some(t)
             }
-            _ => {
-                let face = &hierarchy.polygons[index];
-                let corners = face.first_corner as usize..(face.first_corner + face.edges) as usize;
-                let corners =
-                    corners.map(|corner| point([0, 1, 2].map(|axis| hierarchy.corners[axis][corner])));
-                let hit = self.polygon(hierarchy.polygon_normals[face.source as usize], corners.clone());
-                let t = self.beyond_rounding(hit, extent_of(corners.clone()), bend)?;
-                self.is_in_polygon(corners).then_some(t)
+            Shape::Polygon { normal, corners } => {
+                let extent = extent_of(corners.iter().copied());
+                let t = self.beyond_rounding(self.polygon(normal, &corners), extent, bend)?;
+                self.is_in_polygon(&corners).then_some(t)
             }
         }
     }
@@ -156,9 +213,9 @@ impl Line {
         areas.iter().all(|&area| area >= 0.0) || areas.iter().all(|&area| area <= 0.0)
     }
 
-    fn is_in_polygon(&self, corners: impl Iterator<Item = DVec3> + Clone) -> bool {
-        let next = corners.clone().cycle().skip(1);
-        let crossed = corners.zip(next).filter(|&(from, to)| {
+    fn is_in_polygon(&self, corners: &[DVec3]) -> bool {
+        let next = corners.iter().cycle().skip(1);
+        let crossed = corners.iter().zip(next).filter(|&(&from, &to)| {
             let (from, to) = (self.see(from), self.see(to));
             let turn = cross(from, to);
             match (from[1] < 0.0, to[1] < 0.0) {
@@ -183,7 +240,7 @@ impl Line {
     /// Whether a hit is before the end of the segment to a light. The segment's direction was rounded to f32, so a surface
     /// that the light lies on is met at the end give or take that.
     #[cold]
-    pub(super) fn is_before_light(&self, hierarchy: &Hierarchy, spot: Spot, t: f32, t_max: f32) -> bool {
+    fn is_before_light(&self, hierarchy: &Hierarchy, spot: Spot, t: f32, t_max: f32) -> bool {
         if t_max == f32::INFINITY {
             return true;
         }
@@ -193,30 +250,17 @@ impl Line {
     }
 
     fn hit(&self, hierarchy: &Hierarchy, spot: Spot, t: f64) -> Hit {
-        let (index, lane) = spot.place();
-        let point = |columns: [f32; 3]| DVec3::from(columns.map(f64::from));
-        match spot.0 & 3 {
-            SPHERE => {
-                let block = &hierarchy.spheres[index];
-                let center = point(block.centers.map(|column| column[lane]));
-                let [near, far] = self.sphere(center, f64::from(block.radii[lane]));
-                if self.departure >> 1 == block.ids[lane] {
+        match spot.shape(hierarchy) {
+            Shape::Sphere { center, radius, id } => {
+                let [near, far] = self.sphere(center, radius);
+                if self.departure >> 1 == id {
                     // One root is the start itself, at 0, and the other is their sum.
                     return Hit { t: near.t + far.t, ..far };
                 }
                 if (near.t - t).abs() <= (far.t - t).abs() { near } else { far }
             }
-            TRIANGLE => {
-                let block = &hierarchy.triangles[index];
-                self.triangle(block.vertices.map(|vertex| point(vertex.map(|column| column[lane]))))
-            }
-            _ => {
-                let face = &hierarchy.polygons[index];
-                let corners = face.first_corner as usize..(face.first_corner + face.edges) as usize;
-                let corners =
-                    corners.map(|corner| point([0, 1, 2].map(|axis| hierarchy.corners[axis][corner])));
-                self.polygon(hierarchy.polygon_normals[face.source as usize], corners)
-            }
+            Shape::Triangle(vertices) => self.triangle(vertices),
+            Shape::Polygon { normal, corners } => self.polygon(normal, &corners),
         }
     }
 
@@ -239,9 +283,8 @@ impl Line {
         self.plane(a, normal, normal.length(), vertices.into_iter())
     }
 
-    fn polygon(&self, normal: DVec3, corners: impl Iterator<Item = DVec3> + Clone) -> Hit {
-        let first = corners.clone().next().unwrap_or(DVec3::ZERO);
-        self.plane(first, normal, 1.0, corners)
+    fn polygon(&self, normal: DVec3, corners: &[DVec3]) -> Hit {
+        self.plane(corners[0], normal, 1.0, corners.iter().copied())
     }
 
     fn plane(&self, point: DVec3, normal: DVec3, length: f64, corners: impl Iterator<Item = DVec3>) -> Hit {

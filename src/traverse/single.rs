@@ -1,7 +1,7 @@
 //! One ray at a time: its lanes are the children of a node and the primitives of a block.
 
 use super::candidate::{self, Candidate, Start, View};
-use super::exact::{self, Spot};
+use super::exact::{self, Nearest, Spot};
 use super::{Counts, DEAD, Rays};
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::polygon::Outline;
@@ -112,44 +112,25 @@ impl Ray {
     }
 }
 
-/// The closest hit so far.
-struct Nearest {
-    t: f32,
-    error: f32,
-    spot: Spot,
-    /// Nothing beyond this can be nearer: t + error.
-    end: f32,
-}
-
 /// What takes a candidate, and how.
 struct Target<'a> {
     hierarchy: &'a Hierarchy,
     ray: &'a Ray,
     nearest: Nearest,
+    /// Nothing beyond this can be nearer: t + error.
+    end: f32,
 }
 
 impl Target<'_> {
     /// Takes a hit in if it is nearer, or if any will do and it casts a shadow.
     #[inline(always)]
     fn offer<const ANY: bool>(&mut self, t: f32, error: f32, spot: Spot) {
-        let nearest = &self.nearest;
-        let exact = || self.ray.exact();
-        let is_taken = if ANY {
-            let is_beyond = t - error >= nearest.t;
-            let is_before_end = t + error < nearest.t
-                || (!is_beyond && exact().is_before_light(self.hierarchy, spot, t, nearest.t));
-            is_before_end && self.hierarchy.casts_shadow(spot.id(self.hierarchy))
-        } else if t + error < nearest.t - nearest.error {
-            true
-        } else if t - error > nearest.end {
-            false
-        } else if nearest.spot == Spot::NOTHING {
-            t < nearest.t
-        } else {
-            exact().is_nearer(self.hierarchy, (spot, t), (nearest.spot, nearest.t))
-        };
+        let found = (t, error, spot);
+        let is_taken = self.nearest.yields_to::<ANY>(self.hierarchy, || self.ray.exact(), found)
+            && (!ANY || self.hierarchy.casts_shadow(spot.id(self.hierarchy)));
         if is_taken {
-            self.nearest = Nearest { t, error, spot, end: t + error };
+            self.nearest = Nearest { t, error, spot };
+            self.end = t + error;
         }
     }
 
@@ -169,7 +150,7 @@ impl Target<'_> {
                 self.offer::<ANY>(t, t * exact::ROUNDED, spot);
             }
         }
-        let mut bits = (hit & !(t - error).gt(F::splat(self.nearest.end))).bits();
+        let mut bits = (hit & !(t - error).gt(F::splat(self.end))).bits();
         if bits == 0 {
             return;
         }
@@ -196,22 +177,22 @@ pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
     stack: &mut Stack,
     counts: &mut Counts,
 ) -> (f32, u32) {
-    let nearest = Nearest { t: t_max, error: 0.0, spot: Spot::NOTHING, end: t_max };
-    let mut target = Target { hierarchy, ray, nearest };
+    let nearest = Nearest { t: t_max, error: 0.0, spot: Spot::NOTHING };
+    let mut target = Target { hierarchy, ray, nearest, end: t_max };
     let slabs: Slabs<F::Node> = ray.slabs();
     stack[0] = (Child::inner(0), 0.0);
     let mut waiting = 1;
     while waiting > 0 {
         waiting -= 1;
         let (child, enters) = stack[waiting];
-        if enters > target.nearest.end {
+        if enters > target.end {
             continue;
         }
         let Some(place) = Hierarchy::place(child) else { continue };
         match place {
             Place::Node(index) => {
                 let node = &hierarchy.nodes[index];
-                waiting = push_children::<F>(node, ray, &slabs, target.nearest.end, stack, waiting, counts);
+                waiting = push_children::<F>(node, ray, &slabs, target.end, stack, waiting, counts);
                 continue;
             }
             Place::Triangles(block) => target.test_triangles::<F::Block, DEPARTING, ANY>(block, counts),

@@ -1,7 +1,7 @@
 //! The rays of a packet against what is in a leaf.
 
 use super::super::candidate::{self, Candidate, Start, View};
-use super::super::exact::{self, Spot};
+use super::super::exact::{self, Nearest, Spot};
 use super::super::{Counts, DEAD, NOTHING};
 use super::{Columns, PACKET, Packet};
 use crate::kernel::RaySpace;
@@ -192,14 +192,15 @@ impl Packet {
         }
         let mut bits = unclear.bits();
         if bits != 0 {
-            let mut ts = [0.0; 16];
+            let (mut ts, mut errors) = ([0.0; 16], [0.0; 16]);
             t.store(&mut ts);
+            error.store(&mut errors);
             let mut is_taken = [0.0; 16];
             while bits != 0 {
                 let lane = bits.trailing_zeros() as usize;
                 bits &= bits - 1;
-                is_taken[lane] =
-                    f32::from(u8::from(self.decide::<ANY>(hierarchy, row + lane, ts[lane], spot)));
+                let found = (ts[lane], errors[lane], spot);
+                is_taken[lane] = f32::from(u8::from(self.decide::<ANY>(hierarchy, row + lane, found)));
             }
             self.take::<F, ANY>(row, candidate, closer | F::load(&is_taken).gt(F::splat(0.0)), (spot, id));
         } else if closer.any() {
@@ -221,33 +222,23 @@ impl Packet {
         }
         let Some(t) = self.exact(row).departs_to(hierarchy, spot) else { return };
         let error = t * exact::ROUNDED;
+        if !self.decide::<ANY>(hierarchy, row, (t, error, spot)) {
+            return;
+        }
         self.is_changed = true;
-        let is_taken = if ANY {
-            t + error < self.t[row]
-                || (t - error < self.t[row] && self.decide::<ANY>(hierarchy, row, t, spot))
-        } else {
-            t + error < self.t[row] - self.error[row]
-                || (t - error <= self.end[row] && self.decide::<ANY>(hierarchy, row, t, spot))
-        };
-        if is_taken && ANY {
+        if ANY {
             (self.t[row], self.end[row]) = (DEAD, DEAD);
-        } else if is_taken {
+        } else {
             (self.t[row], self.error[row], self.end[row]) = (t, error, t + error);
             (self.spot[row], self.id[row]) = (spot.0, spot.id(hierarchy));
         }
     }
 
-    /// Decides in f64 for one ray.
+    /// Decides for one ray, in f64 where it takes that.
     #[cold]
-    fn decide<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, t: f32, spot: Spot) -> bool {
-        let nearest = Spot(self.spot[row]);
-        if ANY {
-            self.exact(row).is_before_light(hierarchy, spot, t, self.t[row])
-        } else if nearest == Spot::NOTHING {
-            t < self.t[row]
-        } else {
-            self.exact(row).is_nearer(hierarchy, (spot, t), (nearest, self.t[row]))
-        }
+    fn decide<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, found: (f32, f32, Spot)) -> bool {
+        let nearest = Nearest { t: self.t[row], error: self.error[row], spot: Spot(self.spot[row]) };
+        nearest.yields_to::<ANY>(hierarchy, || self.exact(row), found)
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use crate::lanes::Vector;
 use crate::prepare::bvh::{Bounds, WIDTH};
 use crate::prepare::{Hierarchy, Place};
 use crate::traverse::candidate::{self, Candidate, Start, View};
-use crate::traverse::exact::{self, Spot};
+use crate::traverse::exact::{self, Nearest, Spot};
 use crate::traverse::{DEAD, NOTHING, NOWHERE};
 
 /// Every leaf of a tree, with its box.
@@ -121,8 +121,8 @@ impl Query {
     /// What is left of t_max: nothing if anything hides the end of the ray.
     pub(super) fn occluded<const DEPARTING: bool>(&self, hierarchy: &Hierarchy) -> f32 {
         let is_hidden = self.hits::<DEPARTING>(hierarchy).into_iter().any(|(t, error, spot)| {
-            let is_before_end = t + error < self.t_max
-                || (t - error < self.t_max && self.exact().is_before_light(hierarchy, spot, t, self.t_max));
+            let end = Nearest { t: self.t_max, error: 0.0, spot: Spot::NOTHING };
+            let is_before_end = end.yields_to::<true>(hierarchy, || self.exact(), (t, error, spot));
             is_before_end && hierarchy.casts_shadow(spot.id(hierarchy))
         });
         if is_hidden { DEAD } else { self.t_max }
