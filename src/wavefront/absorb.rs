@@ -1,7 +1,7 @@
 //! Beer's law: what is left of the light that a ray carries through a dielectric to the surface that it leaves by.
 
+use super::column::widen_vector;
 use super::elementary::exp;
-use super::generate::widen_vector;
 use super::queue::{AttenuationQueue, RayQueue, SurfaceQueue};
 use super::statistics::Work;
 use crate::lanes::{Double, Vector};

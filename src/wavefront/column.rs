@@ -1,5 +1,6 @@
 //! Columns of a queue: 64-byte aligned, allocated once.
 
+use crate::lanes::{Double, Vector};
 use bytemuck::{Pod, Zeroable};
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
@@ -103,4 +104,20 @@ impl Field for [f32; 3] {
     fn bytes(columns: &Self::Columns) -> usize {
         columns.iter().map(f32::bytes).sum()
     }
+}
+
+/// Rounds into three columns, from a row on.
+#[inline(always)]
+pub(super) fn round_vector<D: Double>(vector: Vector<D>, columns: &mut [Column<f32>; 3], row: usize) {
+    let [x, y, z] = columns;
+    vector.x.round(&mut x[row..]);
+    vector.y.round(&mut y[row..]);
+    vector.z.round(&mut z[row..]);
+}
+
+/// Widens from three columns, from a row on.
+#[inline(always)]
+pub(super) fn widen_vector<D: Double>(columns: &[Column<f32>; 3], row: usize) -> Vector<D> {
+    let [x, y, z] = columns;
+    Vector::new(D::widen(&x[row..]), D::widen(&y[row..]), D::widen(&z[row..]))
 }

@@ -1,5 +1,6 @@
 //! Primary rays from samples.
 
+use super::column::round_vector;
 use super::queue::RayQueue;
 use super::tiles::Sample;
 use crate::film::SamplePattern;
@@ -41,24 +42,4 @@ pub(super) fn generate<D: Double>(
         round_vector(origin, &mut rays.origin, first);
         round_vector(direction, &mut rays.direction, first);
     }
-}
-
-/// Rounds into three columns, from a row on.
-#[inline(always)]
-pub(super) fn round_vector<D: Double>(
-    vector: Vector<D>,
-    columns: &mut [super::column::Column<f32>; 3],
-    row: usize,
-) {
-    let [x, y, z] = columns;
-    vector.x.round(&mut x[row..]);
-    vector.y.round(&mut y[row..]);
-    vector.z.round(&mut z[row..]);
-}
-
-/// Widens from three columns, from a row on.
-#[inline(always)]
-pub(super) fn widen_vector<D: Double>(columns: &[super::column::Column<f32>; 3], row: usize) -> Vector<D> {
-    let [x, y, z] = columns;
-    Vector::new(D::widen(&x[row..]), D::widen(&y[row..]), D::widen(&z[row..]))
 }

@@ -3,7 +3,7 @@
 //! The kernels found in f32 which primitive is nearest; here the hit is computed anew in f64, once a ray, from the same f32
 //! numbers, and rounded once. A point is put back onto its primitive rather than taken as origin + t·direction.
 
-use super::generate::widen_vector;
+use super::column::{Column, widen_vector};
 use super::queue::{HitQueue, NormalQueue, RadianceQueue, RadianceRecord, RayQueue, SurfaceQueue};
 use super::statistics::Work;
 use crate::lanes::{Double, Lanes, Mask, Vector};
@@ -163,12 +163,7 @@ fn rounded<D: Double>(vector: Vector<D>) -> Vector<D> {
 
 /// Lanes may reach beyond the last row of a column; only rows are written.
 #[inline(always)]
-fn round_rows<D: Double>(
-    vector: Vector<D>,
-    columns: &mut [super::column::Column<f32>; 3],
-    row: usize,
-    count: usize,
-) {
+fn round_rows<D: Double>(vector: Vector<D>, columns: &mut [Column<f32>; 3], row: usize, count: usize) {
     let mut rounded = [[0.0; 8]; 3];
     let [x, y, z] = &mut rounded;
     vector.x.round(x);

@@ -9,10 +9,9 @@
 
 mod leaf;
 
-use super::coherence::WIDEST_SLOPES;
+use super::coherence::{WIDEST_SLOPES, common_order};
 use super::exact::Spot;
 use super::{Counts, DEAD, Ends, Rays};
-use crate::kernel::axes_from;
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::lanes::{Lanes, Mask, Single, Vector};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
@@ -364,32 +363,6 @@ impl Columns for [Column; 3] {
     #[inline(always)]
     fn map_lanes<F: Single>(&self, row: usize) -> Vector<F> {
         Vector::new(F::load(&self[0][row..]), F::load(&self[1][row..]), F::load(&self[2][row..]))
-    }
-}
-
-/// The order of axes and the signs of the directions, if all have the same.
-fn common_order<F: Single>(direction: [&[f32]; 3]) -> Option<([usize; 3], [bool; 3])> {
-    let none = F::first(0);
-    let (mut negative, mut positive) = ([none; 3], [none; 3]);
-    let mut fastest = [none; 3];
-    let zero = F::splat(0.0);
-    for row in (0..PACKET).step_by(F::WIDTH) {
-        let components = direction.map(|column| F::load(&column[row..]));
-        for axis in 0..3 {
-            let is_negative = components[axis].lt(zero);
-            negative[axis] = negative[axis] | is_negative;
-            positive[axis] = positive[axis] | !is_negative;
-        }
-        let [x, y, z] = components.map(Lanes::abs);
-        let first = x.ge(y) & x.ge(z);
-        let second = !first & y.ge(z);
-        fastest = [fastest[0] | first, fastest[1] | second, fastest[2] | !(first | second)];
-    }
-    let is_mixed = (0..3).any(|axis| negative[axis].any() && positive[axis].any());
-    let mut third = (0..3).filter(|&axis| fastest[axis].any());
-    match (is_mixed, third.next(), third.next()) {
-        (false, Some(third), None) => Some((axes_from(third), negative.map(Mask::any))),
-        _ => None,
     }
 }
 
