@@ -37,12 +37,12 @@ pub(crate) fn meet<L: Lanes>(line: &Line<L>, center: Vector<L>, radius_squared: 
 }
 
 impl<L: Lanes> Meeting<L> {
-    /// The smallest t > 0, and whether there is one.
+    /// The smallest t beyond the given one, and whether there is one.
     #[inline(always)]
-    pub(crate) fn nearest(&self, zero: L) -> (L, L::Mask) {
+    pub(crate) fn nearest(&self, t_min: L) -> (L, L::Mask) {
         let (near, far) = (self.closest_t - self.half_t, self.closest_t + self.half_t);
-        let t = L::select(near.gt(zero), near, far);
-        (t, self.meets & t.gt(zero))
+        let t = L::select(near.gt(t_min), near, far);
+        (t, self.meets & t.gt(t_min))
     }
 
     /// Whether the ray starts nearer to the surface than `slack` / r. The distance that t stands for is t·|d|·cos θ, with

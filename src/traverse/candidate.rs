@@ -1,4 +1,4 @@
-//! What counts as a hit of a primitive at 0 < t, for one pair of ray and primitive in each lane.
+//! What counts as a hit of a primitive, for one pair of ray and primitive in each lane.
 //!
 //! A ray that starts on a surface meets that surface again only where geometry says so: a plane never, a sphere once if the
 //! ray goes inside. This is known from the event that made the ray, not from the sign of a rounded number. Where the start
@@ -19,6 +19,8 @@ pub(super) struct Start<F: Single> {
     pub(super) own: F::Mask,
     /// And goes inside.
     pub(super) inward: F::Mask,
+    /// Hits are wanted beyond this t; 0 for a ray that starts on a primitive.
+    pub(super) t_min: F,
 }
 
 /// A hit of a primitive, in each lane.
@@ -71,7 +73,7 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
         return Candidate::none();
     }
     let t = meeting.t(space);
-    let hit = meeting.inside & t.gt(zero);
+    let hit = meeting.inside & t.gt(start.t_min);
     let hit = if DEPARTING { hit & !touches & !start.own } else { hit };
     // cos θ·|d| = |seen area·d_z| / area. Seen so nearly edge-on that the area may be nothing but rounding, t may be anything.
     let error = padding * error_area * space.t_per_z.abs() / meeting.least_seen_area(padding, zero);
@@ -93,7 +95,7 @@ pub(super) fn sphere<F: Single, const DEPARTING: bool>(
     }
     // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
     let error = (padding + padding) * radius / (meeting.half_t * line.a);
-    let (t, hit) = meeting.nearest(zero);
+    let (t, hit) = meeting.nearest(start.t_min);
     if !DEPARTING {
         return Candidate { t, error, hit, unclear: F::first(0) };
     }
@@ -116,7 +118,7 @@ pub(super) fn polygon<F: Single, const DEPARTING: bool>(
     let zero = F::splat(0.0);
     let corner_ts = [outline.least_z * view.space.t_per_z, outline.largest_z * view.space.t_per_z];
     let meeting = polygon::meet_plane([view.line.origin, view.line.direction], plane, corner_ts, zero);
-    let hit = outline.odd & meeting.meets & meeting.t.gt(zero);
+    let hit = outline.odd & meeting.meets & meeting.t.gt(start.t_min);
     // Of the slope too, some roundings are not to be relied on.
     let slope = (meeting.slope.abs() - F::splat(8.0 * UNIT_ROUNDOFF) * view.line.a).max(zero);
     let error = view.padding / slope;

@@ -33,13 +33,15 @@ pub(crate) struct Rays<'a> {
     /// Twice the id of the primitive that the ray starts on, plus 1 if it goes inside; [`NOWHERE`] if it starts on none.
     /// Empty where no ray starts on a primitive.
     pub(crate) departure: &'a [u32],
+    /// Hits are wanted beyond this t; empty where that is 0 or where rays start on primitives.
+    pub(crate) t_min: &'a [f32],
     /// How many there are, without those that fill up.
     pub(crate) count: usize,
 }
 
 /// Where rays end.
 pub(crate) struct Ends<'a> {
-    /// Before: hits are wanted at 0 < t < this. After: the nearest of them where there is one; for an occluded ray, below 0.
+    /// Before: hits are wanted at t_min < t < this. After: the nearest of them where there is one; for an occluded ray, below 0.
     pub(crate) t: &'a mut [f32],
     /// After: the id of what is hit there, [`NOTHING`] where nothing is. Empty if it is only asked whether rays are
     /// occluded.

@@ -29,6 +29,7 @@ pub(super) struct Ray {
     a: f32,
     /// By how much boxes are grown.
     padding: f32,
+    t_min: f32,
     departure: u32,
 }
 
@@ -70,6 +71,7 @@ impl Ray {
             t_per_z,
             a: direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2],
             padding,
+            t_min: rays.t_min.get(row).copied().unwrap_or(0.0),
             departure: rays.departure.get(row).copied().unwrap_or(super::NOWHERE),
         }
     }
@@ -108,7 +110,7 @@ impl Ray {
     fn start<F: Single>(&self, ids: F::Ids) -> Start<F> {
         let own = F::ids_eq(ids, F::splat_ids(self.departure >> 1));
         let inward = F::first(if self.departure & 1 == 1 { F::WIDTH } else { 0 });
-        Start { own, inward }
+        Start { own, inward, t_min: F::splat(self.t_min) }
     }
 }
 
@@ -169,7 +171,7 @@ impl Target<'_> {
 pub(super) type Stack = [(Child, f32); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
 pub(super) const EMPTY_STACK: Stack = [(Child::EMPTY, 0.0); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
 
-/// The nearest hit at 0 < t < `t_max`: t and id. If ANY, whether there is one that casts a shadow: then t is [`DEAD`].
+/// The nearest hit at `t_min` < t < `t_max`: t and id. If ANY, whether there is one that casts a shadow: then t is [`DEAD`].
 pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     ray: &Ray,

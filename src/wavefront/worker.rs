@@ -201,6 +201,7 @@ impl<'a> Worker<'a> {
                 origin: [0, 1, 2].map(|axis| &level.rays.origin[axis][first..]),
                 direction: [0, 1, 2].map(|axis| &level.rays.direction[axis][first..]),
                 departure,
+                t_min: none,
                 count,
             };
             let mut ends = Ends { t: &mut hits.t, id: &mut hits.id };
@@ -263,6 +264,7 @@ impl<'a> Worker<'a> {
                     direction: shadows.direction.each_ref().map(|column| &column[..]),
                     origin_low: shadows.origin_low.each_ref().map(|column| &column[..]),
                     departure: &shadows.departure,
+                    t_min: &[],
                     count,
                 };
                 let mut ends = Ends { t: &mut shadows.t, id: &mut [] };

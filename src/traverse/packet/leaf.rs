@@ -289,9 +289,14 @@ impl Packet {
     #[inline(always)]
     fn start<F: Single, const DEPARTING: bool>(&self, row: usize, id: u32) -> Start<F> {
         if !DEPARTING {
-            return Start { own: F::first(0), inward: F::first(0) };
+            let none = F::first(0);
+            return Start { own: none, inward: none, t_min: F::load(&self.t_min[row..]) };
         }
         let departure = F::load_ids(&self.departure[row..]);
-        Start { own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)), inward: F::ids_odd(departure) }
+        Start {
+            own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)),
+            inward: F::ids_odd(departure),
+            t_min: F::splat(0.0),
+        }
     }
 }

@@ -37,6 +37,8 @@ pub(super) struct Packet {
     t_per_z: Column,
     a: Column,
     inverse_a: Column,
+    /// Not read where rays start on primitives.
+    t_min: Column,
     /// The nearest hit so far, or where hits end to be of interest.
     t: Column,
     error: Column,
@@ -98,6 +100,7 @@ impl Packet {
             t_per_z: column,
             a: column,
             inverse_a: column,
+            t_min: column,
             t: [DEAD; PACKET],
             error: column,
             end: [DEAD; PACKET],
@@ -153,6 +156,8 @@ impl Packet {
                 self.origin_low[axis].copy_from_slice(&rays.origin_low[axis][run.clone()]);
             }
             self.departure.copy_from_slice(&rays.departure[run]);
+        } else if !rays.t_min.is_empty() {
+            self.t_min.copy_from_slice(&rays.t_min[run]);
         }
         self.derive::<F>(hierarchy);
         true

@@ -23,19 +23,21 @@ pub(super) struct Query {
     /// What the origin's rounding left out.
     pub(super) origin_low: [f32; 3],
     pub(super) departure: u32,
+    /// 0 for a ray that starts on a primitive.
+    pub(super) t_min: f32,
     pub(super) t_max: f32,
 }
 
 impl Query {
     pub(super) fn new(sight: Sight) -> Self {
-        Self { sight, origin_low: [0.0; 3], departure: NOWHERE, t_max: f32::INFINITY }
+        Self { sight, origin_low: [0.0; 3], departure: NOWHERE, t_min: 0.0, t_max: f32::INFINITY }
     }
 
     fn exact(&self) -> exact::Line {
         exact::Line::new(self.sight.origin, self.origin_low, self.sight.direction, self.departure)
     }
 
-    /// Every hit at 0 < t: t as the kernel has it, how far it may be off, and where.
+    /// Every hit at `t_min` < t: t as the kernel has it, how far it may be off, and where.
     fn hits<const DEPARTING: bool>(&self, hierarchy: &Hierarchy) -> Vec<(f32, f32, Spot)> {
         let rays = [self.sight];
         let (space, line) = (sight::space::<f32>(&rays), sight::line::<f32>(&rays));
@@ -45,6 +47,7 @@ impl Query {
         let start = |id: u32| Start::<f32> {
             own: self.departure != NOWHERE && self.departure / 2 == id,
             inward: self.departure % 2 == 1,
+            t_min: self.t_min,
         };
         let mut hits = Vec::new();
         let mut offer = |candidate: Candidate<f32>, spot: Spot| {

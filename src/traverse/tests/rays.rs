@@ -54,6 +54,18 @@ pub(super) fn shuffled(random: &mut Random, count: usize) -> Vec<Query> {
     rays.collect()
 }
 
+/// Lets hits count from somewhere on, for rays that start on no primitive.
+pub(super) fn begin(random: &mut Random, rays: &mut [Query]) {
+    for ray in rays {
+        let length = ray.sight.d().length();
+        ray.t_min = match random.below(3) {
+            0 => 0.0,
+            1 => single(random.between(0.0, 2.0) / length),
+            _ => single(random.below(9) as f64 / 4.0 / length),
+        };
+    }
+}
+
 /// Lets rays end somewhere.
 pub(super) fn end(random: &mut Random, rays: &mut [Query]) {
     for ray in rays {
@@ -97,6 +109,7 @@ impl Job for Walk<'_> {
             |number: &dyn Fn(&Query) -> f32| (0..filled).map(|at| number(&row(at))).collect::<Vec<f32>>();
         let origin = [0, 1, 2].map(|axis| column(&|ray| ray.sight.origin[axis]));
         let direction = [0, 1, 2].map(|axis| column(&|ray| ray.sight.direction[axis]));
+        let t_min = column(&|ray| ray.t_min);
         let departure: Vec<u32> = (0..filled).map(|at| row(at).departure).collect();
         let mut t: Vec<f32> = (0..filled).map(|at| if at < count { row(at).t_max } else { DEAD }).collect();
         let mut id = vec![FILLED; if self.any { 0 } else { filled }];
@@ -107,6 +120,7 @@ impl Job for Walk<'_> {
             origin: origin.each_ref().map(Vec::as_slice),
             direction: direction.each_ref().map(Vec::as_slice),
             departure: if self.departing { &departure } else { &[] },
+            t_min: if self.departing { &[] } else { &t_min },
             count,
         };
         let mut counts = Counts::default();

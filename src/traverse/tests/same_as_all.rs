@@ -2,11 +2,11 @@
 
 use super::Random;
 use super::brute_force::Query;
-use super::rays::{assert_same_as_all, coherent, end, shuffled};
+use super::rays::{assert_same_as_all, begin, coherent, end, shuffled};
 use super::scenes::mixed;
 use crate::kernel::tests::sight::Sight;
 use crate::prepare::{Hierarchy, Prepared};
-use crate::scene::Scene;
+use crate::scene::{Geometry, MaterialId, Scene};
 use crate::traverse::NOTHING;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -69,6 +69,7 @@ proptest! {
         seed in any::<u64>(),
         size in prop_oneof![3 => 1..60_usize, 1 => 60..400_usize],
         count in ray_count(),
+        begins in any::<bool>(),
         ends in any::<bool>(),
         departs in any::<bool>(),
         shadowless in prop_oneof![Just(0.0), Just(0.5), Just(1.0)],
@@ -83,9 +84,48 @@ proptest! {
             if departs {
                 let move_there = random.chance(0.7);
                 depart(random, &scene, &prepared.hierarchy, &mut rays, move_there);
+            } else if begins {
+                begin(random, &mut rays);
             }
             assert_same_as_all(&prepared, &rays, departs);
         }
+    }
+}
+
+/// Straight through a row of faces: the first one beyond `t_min` is seen, of a sphere its far side where need be.
+#[test]
+fn hits_up_to_t_min_do_not_count() {
+    let mut geometry = Geometry::default();
+    let material = MaterialId(0);
+    for z in [0.0, -1.0, -2.0] {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, z));
+        geometry.add_polygon(&corners, None, material).unwrap();
+    }
+    let first = geometry.add_vertices([[-4.0, -4.0], [4.0, -4.0], [0.0, 4.0]].map(|[x, y]| Vec3::new(x, y, -3.0)));
+    let first = first.unwrap();
+    geometry.add_triangle([first, first + 1, first + 2], None, material).unwrap();
+    geometry.add_sphere(Vec3::new(0.25, 0.25, -6.0), 1.0, material).unwrap();
+    let scene = Scene { geometry, ..mixed(&mut Random::new(1), 1, 0.0) };
+    let prepared = Prepared::new(&scene).unwrap();
+    let sight = Sight::new(DVec3::new(0.25, 0.25, 1.0), DVec3::NEG_Z);
+    let cases = [
+        (0.0, 1.0, 0),
+        (0.5, 1.0, 0),
+        (1.0, 2.0, 1),
+        (1.5, 2.0, 1),
+        (2.0, 3.0, 2),
+        (3.0, 4.0, 3),
+        (4.0, 6.0, 4),
+        (6.0, 8.0, 4),
+        (8.0, f32::INFINITY, NOTHING),
+    ];
+    for (t_min, t, id) in cases {
+        let ray = Query { t_min, ..Query::new(sight) };
+        let scale = prepared.scale.factor();
+        let scaled = Query { t_min: t_min * scale, sight: Sight::new(sight.o() * f64::from(scale), sight.d()), ..ray };
+        let found = scaled.closest::<false>(&prepared.hierarchy);
+        assert_eq!((found.0 / scale, found.1), (t, id), "beyond {t_min}");
+        assert_same_as_all(&prepared, &[scaled; 70], false);
     }
 }
 
