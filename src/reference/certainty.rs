@@ -16,7 +16,7 @@
 //! the normal; this bounds t, and a primitive's own nearest and farthest points bound it where cos θ is small.
 
 use super::hierarchy::Hierarchy;
-use super::ray::Ray;
+use super::ray::{Departure, Ray};
 use super::shape::{Primitive, Shape};
 use crate::scene::PrimitiveId;
 use glam::{DVec2, DVec3, Vec3Swizzles};
@@ -38,16 +38,41 @@ fn band(origin: DVec3, farthest: f64) -> f64 {
     U * ((6.0 + 3.0_f64.sqrt()) * farthest + origin.length())
 }
 
-/// The primitive, or the miss, that every engine sees along a ray of unit direction; none where they may differ.
-pub(super) fn certain_hit(hierarchy: &Hierarchy, ray: &Ray) -> Option<Option<PrimitiveId>> {
-    // With the largest coordinate E of the scene, L ≤ √3(E + |o|) and |o| ≤ √3·max|o_i|: no band is wider than this.
-    let widest = 16.0 * U * (hierarchy.extent() + ray.origin.abs().max_element());
-    let mut sightings = Sightings::NONE;
-    hierarchy.visit(ray, widest, f64::INFINITY, |primitive| {
+/// The primitive, or the miss, that every engine sees along a ray of unit direction before `t_max`; none where they may
+/// differ.
+pub(super) fn certain_hit(hierarchy: &Hierarchy, ray: &Ray, t_max: f64) -> Option<Option<PrimitiveId>> {
+    let widest = widest_band(hierarchy, ray);
+    let mut sightings = Sightings { end: t_max, ..Sightings::NONE };
+    hierarchy.visit(ray, widest, t_max, |primitive| {
         sightings.add(primitive, ray);
         sightings.end + 2.0 * widest
     });
-    sightings.verdict()
+    sightings.verdict(t_max)
+}
+
+/// Whether every engine finds that something, or nothing, that casts a shadow is met before `t_max` along a ray of unit
+/// direction; none where they may differ.
+pub(super) fn certain_shadow(hierarchy: &Hierarchy, ray: &Ray, t_max: f64) -> Option<bool> {
+    let (mut is_certain, mut may_be) = (false, false);
+    let widest = widest_band(hierarchy, ray);
+    hierarchy.visit(ray, widest, t_max, |primitive| {
+        if primitive.casts_shadow {
+            let (stretches, is_met) = stretches(primitive, ray);
+            for [from, to] in stretches.into_iter().flatten() {
+                // The end is rounded as the primitive is.
+                let slack = to - from;
+                is_certain |= is_met && from > ray.t_min && to + slack < t_max;
+                may_be |= to > ray.t_min && from - slack < t_max;
+            }
+        }
+        if is_certain { f64::NEG_INFINITY } else { t_max + 2.0 * widest }
+    });
+    (is_certain == may_be).then_some(is_certain)
+}
+
+/// With the largest coordinate E of the scene, L ≤ √3(E + |o|) and |o| ≤ √3·max|o_i|: no band is wider than this.
+fn widest_band(hierarchy: &Hierarchy, ray: &Ray) -> f64 {
+    16.0 * U * (hierarchy.extent() + ray.origin.abs().max_element())
 }
 
 /// What an engine may meet along a ray.
@@ -62,25 +87,21 @@ impl Sightings {
     const NONE: Self = Self { all: Vec::new(), end: f64::INFINITY };
 
     fn add(&mut self, primitive: &Primitive, ray: &Ray) {
-        let (stretches, is_certain) = match &primitive.shape {
-            Shape::Sphere { center, radius } => sphere(ray, *center, *radius),
-            Shape::Triangle { vertices, normal, .. } => outline(ray, vertices, *normal),
-            Shape::Polygon { vertices, normal, .. } => outline(ray, vertices, *normal),
-        };
-        for [from, to] in stretches.into_iter().flatten().filter(|[_, to]| *to > 0.0) {
+        let (stretches, is_certain) = stretches(primitive, ray);
+        for [from, to] in stretches.into_iter().flatten().filter(|[_, to]| *to > ray.t_min) {
             self.all.push((primitive.id, from));
             // What may lie behind the origin is not certain to be met.
-            if is_certain && from > 0.0 {
+            if is_certain && from > ray.t_min {
                 self.end = self.end.min(to);
             }
         }
     }
 
     /// Certain is what is alone in coming first.
-    fn verdict(&self) -> Option<Option<PrimitiveId>> {
+    fn verdict(&self, t_max: f64) -> Option<Option<PrimitiveId>> {
         let mut first = self.all.iter().filter(|(_, from)| *from <= self.end).map(|&(id, _)| id);
         let Some(id) = first.next() else { return Some(None) };
-        let is_alone = self.end.is_finite() && first.all(|other| other == id);
+        let is_alone = self.end < t_max && first.all(|other| other == id);
         is_alone.then_some(Some(id))
     }
 }
@@ -88,6 +109,21 @@ impl Sightings {
 /// Up to two stretches of the ray where an engine may meet a primitive, on its near and its far side, and whether every
 /// engine does.
 type Stretches = ([Option<[f64; 2]>; 2], bool);
+
+fn stretches(primitive: &Primitive, ray: &Ray) -> Stretches {
+    let departure = ray.departure.filter(|departure| departure.from == primitive.id);
+    match (&primitive.shape, departure) {
+        // A ray that starts on a sphere meets its far side alone, if it goes inside; one that starts on a face, nothing.
+        (Shape::Sphere { center, radius }, Some(Departure { inward: true, .. })) => {
+            let ([_, far], is_certain) = sphere(ray, *center, *radius);
+            ([None, far], is_certain)
+        }
+        (_, Some(_)) => ([None; 2], false),
+        (Shape::Sphere { center, radius }, None) => sphere(ray, *center, *radius),
+        (Shape::Triangle { vertices, normal, .. }, None) => outline(ray, vertices, *normal),
+        (Shape::Polygon { vertices, normal, .. }, None) => outline(ray, vertices, *normal),
+    }
+}
 
 fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Stretches {
     let to_center = center - ray.origin;
@@ -195,7 +231,7 @@ mod tests {
             (2.0, MISS),
             (1e5, MISS),
         ] {
-            let found = certain_hit(&hierarchy, &down(x + bands * band, y));
+            let found = certain_hit(&hierarchy, &down(x + bands * band, y), f64::INFINITY);
             assert_eq!(found, expected, "{bands} bands outside");
         }
     }
@@ -231,10 +267,10 @@ mod tests {
         let corners = corners.map(|[x, y]: [i8; 2]| Vec3::new(f32::from(x), f32::from(y), 0.0));
         geometry.add_polygon(&corners, None, GREY).unwrap();
         let hierarchy = hierarchy(&geometry);
-        assert_eq!(certain_hit(&hierarchy, &down(0.0, 0.0)), None);
-        assert_eq!(certain_hit(&hierarchy, &down(0.0, -0.5)), hits(0));
-        assert_eq!(certain_hit(&hierarchy, &down(-0.5, 0.0)), hits(0));
-        assert_eq!(certain_hit(&hierarchy, &down(0.5, 0.5)), MISS);
+        assert_eq!(certain_hit(&hierarchy, &down(0.0, 0.0), f64::INFINITY), None);
+        assert_eq!(certain_hit(&hierarchy, &down(0.0, -0.5), f64::INFINITY), hits(0));
+        assert_eq!(certain_hit(&hierarchy, &down(-0.5, 0.0), f64::INFINITY), hits(0));
+        assert_eq!(certain_hit(&hierarchy, &down(0.5, 0.5), f64::INFINITY), MISS);
     }
 
     #[test]
@@ -243,11 +279,11 @@ mod tests {
         add_triangle(&mut geometry, [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0]]);
         add_triangle(&mut geometry, [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]);
         let open = hierarchy(&geometry);
-        assert_eq!(certain_hit(&open, &down(0.25, 0.25)), None);
-        assert_eq!(certain_hit(&open, &down(0.25, 0.24)), hits(0));
-        assert_eq!(certain_hit(&open, &down(0.25, 0.26)), hits(1));
+        assert_eq!(certain_hit(&open, &down(0.25, 0.25), f64::INFINITY), None);
+        assert_eq!(certain_hit(&open, &down(0.25, 0.24), f64::INFINITY), hits(0));
+        assert_eq!(certain_hit(&open, &down(0.25, 0.26), f64::INFINITY), hits(1));
         add_square(&mut geometry, -2.0, 2.0, 1e-5);
-        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.25, 0.25)), hits(2));
+        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.25, 0.25), f64::INFINITY), hits(2));
     }
 
     #[test]
@@ -258,9 +294,9 @@ mod tests {
             #[expect(clippy::cast_possible_truncation, reason = "a number of few digits")]
             add_square(&mut geometry, -0.5, 2.0, z as f32);
             let hierarchy = hierarchy(&geometry);
-            assert_eq!(certain_hit(&hierarchy, &down(-0.75, 0.0)), hits(0));
-            assert_eq!(certain_hit(&hierarchy, &down(1.5, 0.0)), hits(1));
-            certain_hit(&hierarchy, &down(0.0, 0.0))
+            assert_eq!(certain_hit(&hierarchy, &down(-0.75, 0.0), f64::INFINITY), hits(0));
+            assert_eq!(certain_hit(&hierarchy, &down(1.5, 0.0), f64::INFINITY), hits(1));
+            certain_hit(&hierarchy, &down(0.0, 0.0), f64::INFINITY)
         };
         // Met head-on, t is uncertain by the bands, 45 and 49 of 2⁻²⁴.
         assert_eq!([0.0, 50.0 * U, -50.0 * U].map(apart), [None; 3]);
@@ -272,27 +308,27 @@ mod tests {
         let mut geometry = Geometry::default();
         add_triangle(&mut geometry, [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         let tower = hierarchy(&geometry);
-        assert_eq!(certain_hit(&tower, &down(0.0, 0.1)), None);
-        assert_eq!(certain_hit(&tower, &down(1e-5, 0.1)), MISS);
+        assert_eq!(certain_hit(&tower, &down(0.0, 0.1), f64::INFINITY), None);
+        assert_eq!(certain_hit(&tower, &down(1e-5, 0.1), f64::INFINITY), MISS);
         // What is before it is seen for certain, what is behind it is not.
         add_square(&mut geometry, -2.0, 2.0, 1.5);
-        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.1)), hits(1));
+        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.1), f64::INFINITY), hits(1));
         let from_below = Ray::new(DVec3::new(0.0, 0.1, -5.0), DVec3::Z, None);
-        assert_eq!(certain_hit(&hierarchy(&geometry), &from_below), None);
+        assert_eq!(certain_hit(&hierarchy(&geometry), &from_below, f64::INFINITY), None);
     }
 
     #[test]
     fn what_the_ray_starts_on_is_uncertain_and_what_is_behind_it_is_not_seen() {
         let mut geometry = Geometry::default();
         add_square(&mut geometry, -1.0, 1.0, 5.0);
-        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.0)), None);
+        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.0), f64::INFINITY), None);
         let mut geometry = Geometry::default();
         add_square(&mut geometry, -1.0, 1.0, 6.0);
         geometry.add_sphere(Vec3::new(0.0, 0.0, 7.0), 1.0, GREY).unwrap();
-        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.0)), MISS);
+        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.0), f64::INFINITY), MISS);
         // From inside a sphere its far side is met.
         geometry.add_sphere(Vec3::new(0.0, 0.0, 5.0), 0.5, GREY).unwrap();
-        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.0)), hits(2));
+        assert_eq!(certain_hit(&hierarchy(&geometry), &down(0.0, 0.0), f64::INFINITY), hits(2));
     }
 
     /// Numbers in [-1, 1] of no pattern.
@@ -328,7 +364,7 @@ mod tests {
             let ray = Ray::new(origin, (target - origin).normalize(), None);
             let mut sightings = Sightings::NONE;
             all.iter().for_each(|primitive| sightings.add(primitive, &ray));
-            assert_eq!(certain_hit(&hierarchy, &ray), sightings.verdict());
+            assert_eq!(certain_hit(&hierarchy, &ray, f64::INFINITY), sightings.verdict(f64::INFINITY));
         }
     }
 
@@ -347,7 +383,7 @@ mod tests {
             let past = 2.0 * band(origin, 5.0) * noise3(&mut count);
             let direction = (a.lerp(b, noise(&mut count).abs()) + past - origin).normalize();
             let ray = Ray::new(origin, direction, None);
-            let verdict = certain_hit(&hierarchy, &ray);
+            let verdict = certain_hit(&hierarchy, &ray, f64::INFINITY);
             certain += u32::from(verdict.is_some());
             for _ in 0..8 {
                 let moved = Ray::new(
@@ -419,7 +455,7 @@ mod tests {
             };
             let ray = Ray::new(origin, (target + past - origin).normalize(), None);
             let found = single(&geometry, &ray);
-            match certain_hit(&hierarchy, &ray) {
+            match certain_hit(&hierarchy, &ray, f64::INFINITY) {
                 Some(verdict) => {
                     certain += 1;
                     assert_eq!(found, verdict, "{ray:?}");

@@ -14,6 +14,7 @@
 //! - `certainty`: whether an engine in f32 could honestly see another primitive
 //! - `optics`: mirror and refraction directions, and the shares of light that take them
 //! - `precision`: what rays and hits are kept in, f64 or f32
+//! - `query`: questions about single rays
 //! - `record`: what is kept of a tree of rays besides its light
 //! - `tracer`: the recursion that puts these together
 
@@ -22,6 +23,7 @@ mod certainty;
 mod hierarchy;
 mod optics;
 mod precision;
+mod query;
 mod ray;
 mod record;
 mod shape;
@@ -29,4 +31,5 @@ mod tracer;
 
 pub use certainty::PrimaryHit;
 pub use precision::Precision;
+pub use query::Met;
 pub use tracer::Tracer;

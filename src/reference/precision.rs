@@ -17,7 +17,7 @@ pub enum Precision {
 
 impl Precision {
     /// Half the spacing of f32 numbers around 1.
-    const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
+    pub(super) const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 
     /// What is left of a vector once it has been kept; each component is rounded to nearest.
     fn kept(self, vector: DVec3) -> DVec3 {

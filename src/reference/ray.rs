@@ -8,6 +8,8 @@ use glam::DVec3;
 pub(super) struct Ray {
     pub(super) origin: DVec3,
     pub(super) direction: DVec3,
+    /// Hits are wanted beyond this; 0 but for rays that were recorded elsewhere.
+    pub(super) t_min: f64,
     /// Where it starts, if that is on a surface.
     pub(super) departure: Option<Departure>,
     pub(super) ray_space: RaySpace,
@@ -26,7 +28,7 @@ pub(super) struct Departure {
 
 impl Ray {
     pub(super) fn new(origin: DVec3, direction: DVec3, departure: Option<Departure>) -> Self {
-        Self { origin, direction, departure, ray_space: RaySpace::new(direction) }
+        Self { origin, direction, t_min: 0.0, departure, ray_space: RaySpace::new(direction) }
     }
 
     pub(super) fn at(&self, t: f64) -> DVec3 {

@@ -108,7 +108,7 @@ impl Primitive {
             let uncertainty = rounding / approach;
             let least = match ray.departure {
                 Some(other) if departure.is_none() => uncertainty + other.off_surface / approach,
-                _ => 0.0,
+                _ => ray.t_min,
             };
             (t > least).then_some(Meeting { t, uncertainty, approach })
         };

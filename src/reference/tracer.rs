@@ -107,7 +107,11 @@ impl<'a> Tracer<'a> {
         let (origin, direction) = self.through_sample(x, y, s);
         let ray = Ray::new(origin, direction, None);
         let id = self.hierarchy.closest(&ray).map(|hit| hit.primitive.id);
-        PrimaryHit { id, is_certain: certain_hit(&self.hierarchy, &ray) == Some(id) }
+        PrimaryHit { id, is_certain: certain_hit(&self.hierarchy, &ray, f64::INFINITY) == Some(id) }
+    }
+
+    pub(super) fn hierarchy(&self) -> &Hierarchy {
+        &self.hierarchy
     }
 
     fn sample<R: Record>(&self, x: u32, y: u32, s: u32, counts: &mut RayCounts) -> (DVec3, R) {
