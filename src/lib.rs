@@ -13,6 +13,7 @@
 //! - [`wavefront`] traces it: rays in queues, worked through in stages. `traverse` walks them through the tree, `kernel` has
 //!   the tests of rays against primitives, a formula a file, and [`lanes`] makes width a type;
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
+//! - [`mod@trace`] gives recorded [`rays`] to any engine on their own, and takes the time;
 //! - [`film`] holds sample positions, pixels and picture files;
 //! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
 //!
@@ -48,6 +49,7 @@ pub mod reference;
 pub mod render;
 pub mod scene;
 mod signature;
+pub mod trace;
 mod traverse;
 pub mod wavefront;
 mod whole_file;

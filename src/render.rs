@@ -3,12 +3,14 @@
 use crate::film::{Image, Region};
 use crate::lanes::{self, Single, Width};
 use crate::prepare::{PrepareError, Prepared};
-use crate::rays::RayCounts;
+use crate::rays::{RayCounts, RecordedRays};
 use crate::reference::Tracer;
 use crate::scene::Scene;
 use crate::traverse::RUN;
 use crate::wavefront::{Statistics, TileGrid, TilePixels, WavefrontReport, Worker};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -29,6 +31,8 @@ pub enum Engine {
         batch: usize,
         /// Whether to keep a record of what the rays of each pixel hit.
         records: bool,
+        /// Whether to keep the rays themselves: those of every n-th tile of the image, or of none.
+        rays: Option<NonZeroU64>,
     },
 }
 
@@ -36,7 +40,7 @@ impl Engine {
     /// The wavefront engine as it is meant to be used.
     #[must_use]
     pub fn wavefront(width: Width) -> Self {
-        Self::Wavefront { width, batch: DEFAULT_BATCH, records: false }
+        Self::Wavefront { width, batch: DEFAULT_BATCH, records: false, rays: None }
     }
 }
 
@@ -68,6 +72,8 @@ pub struct Rendered {
     pub trace_seconds: f64,
     /// What the rays of each pixel hit; empty unless asked for.
     pub records: Vec<PixelRecord>,
+    /// The rays that were to be kept.
+    pub recorded: RecordedRays,
     /// What the stages of the wavefront engine did; none for the reference.
     pub wavefront: Option<WavefrontReport>,
 }
@@ -112,9 +118,9 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     match options.engine {
         Engine::Reference => with_reference(scene, options, &pool, image),
-        Engine::Wavefront { width, batch, records } => {
+        Engine::Wavefront { width, batch, records, rays } => {
             let batch = batch.max(1).next_multiple_of(RUN);
-            with_wavefront(scene, options, &pool, image, (width, batch, records))
+            with_wavefront(scene, options, &pool, image, (width, batch, records, rays))
         }
     }
 }
@@ -140,6 +146,7 @@ fn with_reference(
         prepare_seconds,
         trace_seconds,
         records: Vec::new(),
+        recorded: RecordedRays::default(),
         wavefront: None,
     })
 }
@@ -175,7 +182,7 @@ fn with_wavefront(
     options: &RenderOptions<'_>,
     pool: &rayon::ThreadPool,
     image: Image,
-    (width, batch, wants_records): (Width, usize, bool),
+    (width, batch, wants_records, wants_rays): (Width, usize, bool, Option<NonZeroU64>),
 ) -> Result<Rendered, RenderError> {
     let start = Instant::now();
     let prepared = pool.install(|| Prepared::new(scene))?;
@@ -188,10 +195,12 @@ fn with_wavefront(
         grid: TileGrid::new(options.region, &prepared, batch),
         batch,
         wants_records,
+        wants_rays,
         options,
         next: AtomicU64::new(0),
         pixels_done: AtomicU64::new(0),
         result: Mutex::new((image, records)),
+        recorded: Mutex::default(),
     };
     // One worker a thread, each with queues of its own.
     let workers = pool.broadcast(|_| width.run(RunWorker(&tiles)));
@@ -207,9 +216,14 @@ fn with_wavefront(
     }
     let report = WavefrontReport::new(&statistics, &prepared, queue_bytes);
     let (image, records) = tiles.result.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut recorded = RecordedRays::default();
+    for (_, rays) in tiles.recorded.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        recorded.append(rays);
+    }
     Ok(Rendered {
         image,
         records,
+        recorded,
         rays: statistics.rays,
         threads: pool.current_num_threads(),
         prepare_seconds,
@@ -224,11 +238,14 @@ struct TiledRender<'a> {
     grid: TileGrid,
     batch: usize,
     wants_records: bool,
+    wants_rays: Option<NonZeroU64>,
     options: &'a RenderOptions<'a>,
     /// The tile to be taken next.
     next: AtomicU64,
     pixels_done: AtomicU64,
     result: Mutex<(Image, Vec<PixelRecord>)>,
+    /// By tile.
+    recorded: Mutex<BTreeMap<u64, RecordedRays>>,
 }
 
 impl TiledRender<'_> {
@@ -262,7 +279,13 @@ impl lanes::Job for RunWorker<'_> {
             if index >= render.grid.count() || render.options.stop.load(Ordering::Relaxed) {
                 break;
             }
-            let pixels = worker.tile::<F>(&render.grid, index);
+            let pixels = if render.wants_rays.is_some_and(|every| index % every == 0) {
+                let (pixels, rays) = worker.recorded_tile::<F>(&render.grid, index);
+                render.recorded.lock().unwrap_or_else(PoisonError::into_inner).insert(index, rays);
+                pixels
+            } else {
+                worker.tile::<F>(&render.grid, index)
+            };
             render.paste(&pixels, render.grid.tile(index));
             let pixels = render.grid.tile(index).pixels();
             let done = render.pixels_done.fetch_add(pixels, Ordering::Relaxed) + pixels;

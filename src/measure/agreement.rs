@@ -49,7 +49,7 @@ impl Agreement {
     /// # Errors
     /// What keeps the wavefront engine from rendering it.
     pub fn measure(scene: &Scene, width: Width) -> Result<Self, RenderError> {
-        let engine = Engine::Wavefront { width, batch: DEFAULT_BATCH, records: true };
+        let engine = Engine::Wavefront { width, batch: DEFAULT_BATCH, records: true, rays: None };
         let found = rendered(scene, engine)?;
         let stop = AtomicBool::new(false);
         let exact = Tracer::new(scene, &stop);

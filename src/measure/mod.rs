@@ -2,8 +2,10 @@
 
 mod agreement;
 mod difference;
+mod hit_errors;
 mod report;
 
 pub use agreement::{Agreement, Distance};
 pub use difference::{Difference, heat_map};
+pub use hit_errors::{HitErrors, Percentiles, Wrong};
 pub use report::{RenderReport, Seconds, peak_resident_bytes};

@@ -11,6 +11,8 @@ use crate::prepare::Plan;
 /// These queues live on while deeper levels are worked through; everything else is shared by all depths.
 pub(super) struct Level {
     pub(super) rays: RayQueue,
+    /// How many of the rays, the first ones, were reflected; the others were refracted.
+    pub(super) reflected_rays: usize,
     /// Row by row of the rays; empty at depth 0.
     pub(super) departures: DepartureQueue,
     /// Row by row of the rays.
@@ -39,6 +41,7 @@ impl Level {
         let has_surfaces = plan.spheres + plan.triangles + plan.polygons > 0;
         Self {
             rays: RayQueue::with_capacity(rays),
+            reflected_rays: 0,
             departures: DepartureQueue::with_capacity(if_needed(depth > 0, rays)),
             radiance: RadianceQueue::with_capacity(rays),
             pending: PendingQueue::with_capacity(if_needed(has_surfaces, batch)),
@@ -53,6 +56,7 @@ impl Level {
     /// Empties the rays, for their parents to fill.
     pub(super) fn begin(&mut self) {
         self.rays.clear();
+        self.reflected_rays = 0;
         self.departures.clear();
     }
 

@@ -26,6 +26,7 @@ mod illuminate;
 mod level;
 mod optics;
 mod queue;
+mod recorder;
 mod report;
 mod resolve;
 mod spawn;

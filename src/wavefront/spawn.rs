@@ -120,6 +120,7 @@ pub(super) fn spawn<D: Double>(
             rays.reflect += u64::from(is_pushed);
         }
     }
+    queues.deeper.reflected_rays = queues.deeper.rays.len();
     if refracts {
         for row in 0..count {
             let direction = [0, 1, 2].map(|axis| queues.refractions.direction[axis][row]);

@@ -5,6 +5,7 @@ use super::generate::generate;
 use super::illuminate;
 use super::level::Level;
 use super::queue::{HitQueue, NormalQueue, QueuePlan, RefractionQueue, ShadowQueue, SurfaceQueue};
+use super::recorder::Recorder;
 use super::resolve::{add_to_pixels, resolve};
 use super::spawn::{Spawning, spawn};
 use super::statistics::{Stage, Statistics};
@@ -14,6 +15,7 @@ use super::trail::{self, PixelRecord};
 use crate::film::{Region, SamplePattern};
 use crate::lanes::{Double, Single};
 use crate::prepare::Prepared;
+use crate::rays::RecordedRays;
 use crate::traverse::{self, DEAD, Ends, NOTHING, Rays};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -50,6 +52,8 @@ pub(crate) struct Worker<'a> {
     /// By depth; made when a ray first gets so deep.
     levels: Vec<Level>,
     scratch: Scratch,
+    /// Where rays are to be kept.
+    recorder: Option<Recorder>,
     stop: &'a AtomicBool,
     pub(crate) statistics: Statistics,
 }
@@ -110,9 +114,21 @@ impl<'a> Worker<'a> {
             samples: Vec::with_capacity(batch),
             levels: vec![Level::new(&prepared.plan, 0, batch, records)],
             scratch: Scratch::new(prepared, batch),
+            recorder: None,
             stop,
             statistics: Statistics::default(),
         }
+    }
+
+    /// Renders a tile of the grid, and keeps its rays.
+    pub(crate) fn recorded_tile<F: Single>(
+        &mut self,
+        grid: &TileGrid,
+        index: u64,
+    ) -> (TilePixels, RecordedRays) {
+        self.recorder = Some(Recorder::new(self.prepared));
+        let pixels = self.tile::<F>(grid, index);
+        (pixels, self.recorder.take().map(|recorder| recorder.rays).unwrap_or_default())
     }
 
     /// Renders a tile of the grid. Means nothing once the worker was told to stop.
@@ -166,6 +182,10 @@ impl<'a> Worker<'a> {
             }
             self.intersect::<F>(depth, first, (count - first).min(self.batch));
             self.surface::<F::Double>(depth, first);
+            if let Some(recorder) = &mut self.recorder {
+                let Scratch { hits, surfaces, normals, .. } = &self.scratch;
+                recorder.closest((&self.levels[depth], depth, first), hits, surfaces, normals);
+            }
             self.illuminate::<F>(depth, first);
             let has_children = self.spawn::<F::Double>(depth);
             if has_children {
@@ -252,6 +272,9 @@ impl<'a> Worker<'a> {
             });
             self.statistics.powers += powers;
             self.statistics.rays.shadow += shadows.len() as u64;
+            if let Some(recorder) = &mut self.recorder {
+                recorder.shadow(shadows);
+            }
             self.statistics.timed(depth, Stage::Occlude, |work| {
                 work.rows += shadows.len() as u64;
                 let count = shadows.len();

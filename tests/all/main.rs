@@ -14,6 +14,7 @@ mod floor;
 mod formats;
 mod model;
 mod real_scenes;
+mod recorded;
 mod robustness;
 mod support;
 mod wavefront;

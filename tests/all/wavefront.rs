@@ -42,7 +42,7 @@ fn bits_do_not_depend_on_lanes_threads_batches_or_crop() {
             (Width::One, 192, 2),
             (Width::Sixteen, 1 << 16, 1),
         ] {
-            let engine = Engine::Wavefront { width, batch, records: false };
+            let engine = Engine::Wavefront { width, batch, records: false, rays: None };
             let found = render_region(&scene, engine, whole, threads).image;
             assert!(bits(&found) == bits(&expected), "{name}: {width:?}, batch {batch}, {threads} threads");
         }

@@ -1,4 +1,8 @@
-//! The kinds of ray, how many of each were traced, and a ray on its own, as it is handed from one engine to another.
+//! The kinds of ray, how many of each were traced, and rays on their own, as they are handed from one engine to another.
+
+mod set;
+
+pub use set::{Found, RaySet, RecordedRays, Start};
 
 use crate::scene::PrimitiveId;
 use glam::DVec3;
