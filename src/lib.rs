@@ -43,6 +43,7 @@ pub mod lanes;
 pub mod load;
 mod math;
 pub mod measure;
+mod npy;
 pub mod prepare;
 pub mod rays;
 pub mod reference;
