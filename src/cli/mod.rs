@@ -2,6 +2,7 @@
 
 mod check;
 mod diff;
+mod engine;
 mod explain;
 mod failure;
 mod interrupt;

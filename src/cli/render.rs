@@ -1,5 +1,6 @@
 //! `wavelane render SCENE -o OUT`.
 
+use super::engine::EngineArguments;
 use super::progress::{Progress, Style};
 use super::{Failure, interrupt, output};
 use crate::film::{self, BitDepth, Region};
@@ -9,7 +10,9 @@ use crate::load;
 use crate::measure::{self, RenderReport, Seconds};
 use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
+use crate::trace;
 use clap::ValueEnum;
+use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -20,15 +23,8 @@ pub(super) struct Arguments {
     /// Picture to write: .png (sRGB), .exr or .npy (linear f32)
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// What traces the rays
-    #[arg(long, value_enum, default_value = "simd")]
-    engine: Engine,
-    /// Lanes of the simd engine's kernels; they do not change the picture [default: the widest that pays]
-    #[arg(long, value_name = "N", value_parser = ["4", "8", "16"])]
-    lanes: Option<String>,
-    /// Worker threads [default: one a core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    engine: EngineArguments,
     /// Size of the image, pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
@@ -47,6 +43,10 @@ pub(super) struct Arguments {
     /// The deepest ray, 0–64; primary rays are depth 0 [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(RenderSettings::MAX_DEPTH)))]
     max_depth: Option<u32>,
+    /// Write the rays of the frame into this folder, by kind: primary.npy, shadow.npy, reflect.npy and refract.npy, of shape
+    /// (R, 8), f32: origin xyz, tmin, direction xyz, tmax. They are kept in memory until then: 52 to 64 bytes a ray
+    #[arg(long, value_name = "DIR")]
+    record_rays: Option<PathBuf>,
     /// Bits a channel of a PNG
     #[arg(long, value_name = "BITS", value_parser = ["8", "16"], default_value = "8")]
     bits: String,
@@ -56,26 +56,6 @@ pub(super) struct Arguments {
     /// Write a report of the run as JSON, to stdout if FILE is -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Engine {
-    /// Wavefront, SIMD lanes
-    Simd,
-    /// Wavefront, one lane
-    Scalar,
-    /// Recursive, f64, from the textbook
-    Reference,
-}
-
-impl Engine {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Simd => "simd",
-            Self::Scalar => "scalar",
-            Self::Reference => "reference",
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -111,18 +91,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     film::check_writable(&arguments.output)?;
     output::check_json(arguments.json.as_deref(), &[&arguments.output])?;
 
-    if let Some(warning) = unused_instructions(arguments.engine, arguments.progress, Isa::of_this_machine()) {
-        output::diagnostic(&warning);
-    }
+    arguments.engine.warn_of_unused_instructions(arguments.progress);
 
     let whole = Region::whole(scene.image.width, scene.image.height);
     let region = arguments.crop.unwrap_or(whole);
-    let progress = Progress::new(arguments.progress, region.pixels());
+    let progress = Progress::new(arguments.progress, region.pixels(), "pixels");
     let rendered = interrupt::watched(|stop| {
         let options = RenderOptions {
-            engine: engine(arguments),
+            engine: match arguments.engine.width() {
+                Some(width) => render::Engine::Wavefront {
+                    width,
+                    batch: render::DEFAULT_BATCH,
+                    records: false,
+                    rays: arguments.record_rays.as_ref().map(|_| NonZeroU64::MIN),
+                },
+                None => render::Engine::Reference,
+            },
             region,
-            threads: arguments.threads.map_or(0, usize::from),
+            threads: arguments.engine.threads(),
             on_progress: &|done| progress.report(done),
             stop,
         };
@@ -135,6 +121,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let write_start = Instant::now();
     let depth = if arguments.bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight };
     film::write(&rendered.image, &arguments.output, depth)?;
+    if let Some(folder) = &arguments.record_rays {
+        trace::write_rays(&scene.geometry, &rendered.recorded, folder)
+            .map_err(|(path, why)| Failure::Write { path, why })?;
+    }
     let seconds = Seconds {
         load,
         prepare: rendered.prepare_seconds,
@@ -150,38 +140,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// What clap cannot see in one argument alone.
 fn check_usage(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.lanes.is_some() && arguments.engine != Engine::Simd {
-        output::diagnostic(&"warning: --lanes belongs to the simd engine and changes nothing here");
-    }
+    arguments.engine.warn_of_useless_lanes();
     film::Format::of(&arguments.output)?;
+    if arguments.record_rays.is_some() && arguments.engine.width().is_none() {
+        let message =
+            "--record-rays: rays are recorded from the simd or the scalar engine, not from the reference";
+        return Err(Failure::Usage(message.into()));
+    }
     Ok(())
-}
-
-fn engine(arguments: &Arguments) -> render::Engine {
-    let width = match (arguments.engine, arguments.lanes.as_deref()) {
-        (Engine::Reference, _) => return render::Engine::Reference,
-        (Engine::Scalar, _) => Width::One,
-        (Engine::Simd, Some("4")) => Width::Four,
-        (Engine::Simd, Some("8")) => Width::Eight,
-        (Engine::Simd, Some("16")) => Width::Sixteen,
-        (Engine::Simd, _) => Width::BEST,
-    };
-    render::Engine::wavefront(width)
-}
-
-/// A warning that another build would be faster on this machine.
-///
-/// Only the simd engine gains by it (docs/design.md). It goes to the log of a batch job as to a terminal, since it is in
-/// batches that the time is lost; with `--progress json` a program reads stderr, and `--progress none` is how to ask for
-/// silence where one build serves many machines on purpose.
-fn unused_instructions(engine: Engine, progress: Style, machine: Isa) -> Option<String> {
-    let is_told = engine == Engine::Simd && matches!(progress, Style::Auto) && machine != Isa::BUILT_FOR;
-    is_told.then(|| {
-        format!(
-            "warning: built for {}, and this machine has {machine}: build on it (cargo build --release) for more speed",
-            Isa::BUILT_FOR
-        )
-    })
 }
 
 /// The command line's settings take the place of the scene's.
@@ -208,10 +174,7 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         scene: arguments.scene.display().to_string(),
         output: arguments.output.display().to_string(),
         engine: arguments.engine.name(),
-        lanes: match engine(arguments) {
-            render::Engine::Reference => 1,
-            render::Engine::Wavefront { width, .. } => width.lanes(),
-        },
+        lanes: arguments.engine.width().map_or(1, Width::lanes),
         isa: Isa::BUILT_FOR,
         threads: rendered.threads,
         size: [scene.image.width, scene.image.height],
@@ -224,30 +187,5 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         seconds,
         peak_resident_bytes: measure::peak_resident_bytes(),
         wavefront: rendered.wavefront.clone(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_who_can_gain_speed_is_told_so() {
-        // Any but the one that the build is for.
-        let other = if Isa::BUILT_FOR == Isa::Avx512 { Isa::Avx2 } else { Isa::Avx512 };
-        let said = unused_instructions(Engine::Simd, Style::Auto, other).unwrap();
-        assert!(
-            said.contains(&format!("built for {}, and this machine has {other}", Isa::BUILT_FOR)),
-            "{said}"
-        );
-        for (engine, progress, machine) in [
-            (Engine::Simd, Style::Auto, Isa::BUILT_FOR),
-            (Engine::Simd, Style::Json, other),
-            (Engine::Simd, Style::None, other),
-            (Engine::Scalar, Style::Auto, other),
-            (Engine::Reference, Style::Auto, other),
-        ] {
-            assert_eq!(unused_instructions(engine, progress, machine), None);
-        }
     }
 }

@@ -3,6 +3,7 @@
 //! - `text`: a file as text, with lines and columns; `words`: its words; `number`: what a number may be
 //! - `toml`: the project's own format; `nff`: Haines' Neutral File Format
 //! - `mesh`: OBJ with MTL, and PLY, alone or as parts of a scene
+//! - `rays`: recorded rays
 //! - `framing`: the camera and the light of a file that has none
 
 mod error;
@@ -10,12 +11,14 @@ mod framing;
 mod mesh;
 mod nff;
 mod number;
+mod rays;
 mod suggest;
 mod text;
 mod toml;
 mod words;
 
 pub use error::{Cause, InputError, Place, Warning};
+pub use rays::rays;
 
 use crate::scene::Scene;
 use error::Warnings;

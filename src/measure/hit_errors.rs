@@ -7,6 +7,7 @@ use crate::trace::{Hits, Query};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::fmt::{self, Display, Formatter};
 
 /// How wrong answers about rays are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -83,6 +84,39 @@ impl HitErrors {
     #[must_use]
     pub fn mistakes(&self) -> u64 {
         self.false_hits.certain + self.false_misses.certain + self.other_primitives.certain
+    }
+}
+
+impl Display for HitErrors {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { false_hits, false_misses, other_primitives, .. } = self;
+        write!(
+            f,
+            "{false_hits} false hits, {false_misses} false misses, {other_primitives} other primitives"
+        )?;
+        if let Some(t) = &self.t_ulps {
+            write!(f, "; t off by {t} ulp")?;
+        }
+        if let Some(t) = &self.t_backward {
+            write!(f, ", backward error {t} roundings")?;
+        }
+        Ok(())
+    }
+}
+
+impl Display for Wrong {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.certain)?;
+        match self.near_edges {
+            0 => Ok(()),
+            near => write!(f, " (and {near} within rounding of an edge)"),
+        }
+    }
+}
+
+impl Display for Percentiles {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.1} in the median, {:.1} at p99, {:.1} at most", self.p50, self.p99, self.max)
     }
 }
 

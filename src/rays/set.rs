@@ -1,6 +1,6 @@
 //! Rays that were recorded, so that any engine can be given the same ones.
 
-use super::{Departure, RayKind, RayCounts, Stretch};
+use super::{Departure, RayCounts, RayKind, Stretch};
 use crate::scene::{MAX_COORDINATE, PrimitiveId};
 use glam::DVec3;
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 /// Rays in columns and in the scene's scale, in runs of [`RUN`]. Both scale and the length of a direction are brought to the
 /// size of 1 by powers of two, so what is found is found for the very rays that were given.
-pub(super) struct RayColumns {
+pub struct RayColumns {
     origin: [Vec<f32>; 3],
     origin_low: [Vec<f32>; 3],
     direction: [Vec<f32>; 3],
@@ -64,9 +64,8 @@ impl Row {
             origin: [ox, oy, oz].map(|coordinate| coordinate * scale),
             origin_low: start.map_or([0.0; 3], |start| start.origin_low.map(|low| low * scale)),
             direction,
-            departure: start.map_or(NOWHERE, |start| {
-                start.departure.from.0 << 1 | u32::from(start.departure.inward)
-            }),
+            departure: start
+                .map_or(NOWHERE, |start| start.departure.from.0 << 1 | u32::from(start.departure.inward)),
             t_min: t(stretch.t_min),
             t_max: t(stretch.t_max),
             world_per_t,
@@ -84,7 +83,9 @@ fn power_of_two_above(number: f32) -> f64 {
 }
 
 impl RayColumns {
-    pub(super) fn new(prepared: &Prepared<'_>, rays: &RaySet) -> Self {
+    /// Takes rays over for a scene.
+    #[must_use]
+    pub fn new(prepared: &Prepared<'_>, rays: &RaySet) -> Self {
         let count = rays.len();
         let scale = prepared.scale.factor();
         let mut rows: Vec<Row> = Vec::with_capacity(count.next_multiple_of(RUN));
@@ -95,7 +96,8 @@ impl RayColumns {
             last = rows[row];
         }
         rows.resize(count.next_multiple_of(RUN), Row { t_max: DEAD, ..last });
-        let vector = |of: fn(&Row) -> [f32; 3]| [0, 1, 2].map(|axis| rows.iter().map(|row| of(row)[axis]).collect());
+        let vector =
+            |of: fn(&Row) -> [f32; 3]| [0, 1, 2].map(|axis| rows.iter().map(|row| of(row)[axis]).collect());
         let departs = !rays.starts.is_empty();
         let if_departing = |departs: bool| if departs { rows.len() } else { 0 };
         let mut this = Self {

@@ -4,15 +4,19 @@
 //! every engine gets the same rays, so their speeds and their answers can be compared ray by ray.
 //!
 //! - `columns`: rays as the wavefront engine reads them
-//! - `passes`: tracing them over and over, timed
+//! - `passes`: passes over all rays, timed
+//! - `files`: rays and hits as NPY arrays
 //! - `clearance`: a `t_min` for tracers that do not know where a ray starts
 
 mod clearance;
 mod columns;
+mod files;
 mod passes;
 
 pub use clearance::add_clearance;
-pub use passes::{Passes, Tracing, trace, trace_with_reference};
+pub use columns::RayColumns;
+pub use files::{hit_files, ray_file, write_hits, write_rays};
+pub use passes::{ReferenceRun, Run};
 
 use crate::rays::RayKind;
 

@@ -1,4 +1,4 @@
-//! Tracing rays over and over, timed.
+//! Passes over all rays, timed.
 
 use super::columns::{EndColumns, RayColumns};
 use super::{Hits, Query};
@@ -8,57 +8,76 @@ use crate::rays::RaySet;
 use crate::reference::Tracer;
 use crate::traverse::{self, Counts, Ends, RUN};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// What traces, what for, and how often.
-#[derive(Clone, Copy)]
-pub struct Tracing<'a> {
-    /// What is asked.
-    pub query: Query,
-    /// Timed passes, at least 1; one more goes before them.
-    pub repeat: usize,
-    /// Where the work is done.
-    pub pool: &'a rayon::ThreadPool,
-    /// Set to true, makes it stop after the pass at hand.
-    pub stop: &'a AtomicBool,
+/// Rays to be traced by the wavefront engine's kernels.
+pub struct Run<'a> {
+    prepared: &'a Prepared<'a>,
+    columns: &'a RayColumns,
+    query: Query,
+    ends: EndColumns,
 }
 
-/// What passes over rays found and took.
-#[derive(Clone, Debug)]
-pub struct Passes {
-    /// The same in every pass.
-    pub hits: Hits,
-    /// Wall-clock seconds of each timed pass.
-    pub seconds: Vec<f64>,
+impl<'a> Run<'a> {
+    /// Makes room for what will be hit.
+    #[must_use]
+    pub fn new(prepared: &'a Prepared<'a>, columns: &'a RayColumns, query: Query) -> Self {
+        let ids = if query == Query::Closest { columns.filled() } else { 0 };
+        Self {
+            prepared,
+            columns,
+            query,
+            ends: EndColumns { t: vec![0.0; columns.filled()], id: vec![0; ids] },
+        }
+    }
+
+    /// Traces all rays once, on the threads of a pool, and returns wall-clock seconds: from rays in columns to hits in
+    /// columns, both in the scene's scale.
+    pub fn pass(&mut self, width: Width, pool: &rayon::ThreadPool) -> f64 {
+        let Self { prepared, columns, query, ends } = self;
+        let start = Instant::now();
+        pool.install(|| width.run(Pass { prepared, columns, query: *query, ends }));
+        start.elapsed().as_secs_f64()
+    }
+
+    /// What the last pass found.
+    #[must_use]
+    pub fn hits(&self) -> Hits {
+        self.columns.hits(self.query, &self.ends)
+    }
 }
 
-/// Traces rays with the wavefront engine's kernels, at a number of lanes.
-///
-/// What is timed begins with rays in columns and ends with hits in columns, both in the scene's scale.
-#[must_use]
-pub fn trace(prepared: &Prepared<'_>, rays: &RaySet, width: Width, tracing: &Tracing<'_>) -> Passes {
-    let columns = RayColumns::new(prepared, rays);
-    let ids = if tracing.query == Query::Closest { columns.filled() } else { 0 };
-    let mut ends = EndColumns { t: vec![0.0; columns.filled()], id: vec![0; ids] };
-    let seconds = timed(tracing, || {
-        tracing.pool.install(|| width.run(Pass { prepared, columns: &columns, query: tracing.query, ends: &mut ends }));
-    });
-    Passes { hits: columns.hits(tracing.query, &ends), seconds }
+/// Rays to be traced by the f64 reference.
+pub struct ReferenceRun<'a> {
+    tracer: &'a Tracer<'a>,
+    rays: &'a RaySet,
+    query: Query,
+    hits: Hits,
 }
 
-/// Traces rays with the f64 reference.
-#[must_use]
-pub fn trace_with_reference(tracer: &Tracer<'_>, rays: &RaySet, tracing: &Tracing<'_>) -> Passes {
-    let mut hits = Hits { t: vec![0.0; rays.len()], id: vec![0; rays.len()] };
-    let seconds = timed(tracing, || {
-        tracing.pool.install(|| {
-            (&mut hits.t, &mut hits.id).into_par_iter().enumerate().with_min_len(RUN).for_each(|(row, (t, id))| {
-                (*t, *id) = reference_hit(tracer, rays, row, tracing.query);
-            });
+impl<'a> ReferenceRun<'a> {
+    /// Makes room for what will be hit.
+    #[must_use]
+    pub fn new(tracer: &'a Tracer<'a>, rays: &'a RaySet, query: Query) -> Self {
+        Self { tracer, rays, query, hits: Hits { t: vec![0.0; rays.len()], id: vec![0; rays.len()] } }
+    }
+
+    /// Traces all rays once, on the threads of a pool, and returns wall-clock seconds.
+    pub fn pass(&mut self, pool: &rayon::ThreadPool) -> f64 {
+        let Self { tracer, rays, query, hits } = self;
+        let start = Instant::now();
+        pool.install(|| {
+            let rows = (&mut hits.t, &mut hits.id).into_par_iter().enumerate().with_min_len(RUN);
+            rows.for_each(|(row, (t, id))| (*t, *id) = reference_hit(tracer, rays, row, *query));
         });
-    });
-    Passes { hits, seconds }
+        start.elapsed().as_secs_f64()
+    }
+
+    /// What the last pass found.
+    #[must_use]
+    pub fn hits(&self) -> &Hits {
+        &self.hits
+    }
 }
 
 fn reference_hit(tracer: &Tracer<'_>, rays: &RaySet, row: usize, query: Query) -> (f32, u32) {
@@ -73,18 +92,6 @@ fn reference_hit(tracer: &Tracer<'_>, rays: &RaySet, row: usize, query: Query) -
         Query::Any if tracer.occluded(&stretch) => (0.0, Hits::MISS),
         Query::Any => miss,
     }
-}
-
-/// Seconds of passes, the first of which is not counted.
-fn timed(tracing: &Tracing<'_>, mut pass: impl FnMut()) -> Vec<f64> {
-    pass();
-    let mut seconds = Vec::with_capacity(tracing.repeat);
-    while seconds.len() < tracing.repeat.max(1) && !(tracing.stop.load(Ordering::Relaxed) && !seconds.is_empty()) {
-        let start = Instant::now();
-        pass();
-        seconds.push(start.elapsed().as_secs_f64());
-    }
-    seconds
 }
 
 /// Rays that a thread traces before it looks for more: enough to make up for starting, little enough to share.

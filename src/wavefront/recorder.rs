@@ -58,7 +58,8 @@ impl Recorder {
                 _ if row < level.reflected_rays => (RayKind::Reflect, row - first),
                 _ => (RayKind::Refract, row - level.reflected_rays.max(first)),
             };
-            let columns = if normals.len() > 0 { &normals.shading_normal } else { &surfaces.geometric_normal };
+            let columns =
+                if normals.len() > 0 { &normals.shading_normal } else { &surfaces.geometric_normal };
             self.rays.of_mut(kind).found[begin[kind as usize] + hit].shading_normal =
                 [0, 1, 2].map(|axis| columns[axis][surface]);
         }
@@ -82,5 +83,8 @@ impl Recorder {
 }
 
 fn start(origin_low: [f32; 3], departure: u32) -> Start {
-    Start { origin_low, departure: Departure { from: PrimitiveId(departure >> 1), inward: departure & 1 == 1 } }
+    Start {
+        origin_low,
+        departure: Departure { from: PrimitiveId(departure >> 1), inward: departure & 1 == 1 },
+    }
 }

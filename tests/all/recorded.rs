@@ -13,7 +13,7 @@ use wavelane::rays::{RayKind, RaySet, RecordedRays};
 use wavelane::reference::Tracer;
 use wavelane::render::Engine;
 use wavelane::scene::Scene;
-use wavelane::trace::{Hits, Query, Tracing, add_clearance, trace, trace_with_reference};
+use wavelane::trace::{Hits, Query, RayColumns, ReferenceRun, Run, add_clearance};
 
 /// All rays of a frame.
 fn record(scene: &Scene) -> RecordedRays {
@@ -24,14 +24,22 @@ fn record(scene: &Scene) -> RecordedRays {
     rendered.recorded
 }
 
-fn with_tracing<T>(query: Query, then: impl FnOnce(&Tracing<'_>) -> T) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    then(&Tracing { query, repeat: 1, pool: &pool, stop: &AtomicBool::new(false) })
+fn pool() -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap()
 }
 
 fn traced(scene: &Scene, rays: &RaySet, query: Query, width: Width) -> Hits {
     let prepared = Prepared::new(scene).unwrap();
-    with_tracing(query, |tracing| trace(&prepared, rays, width, tracing).hits)
+    let columns = RayColumns::new(&prepared, rays);
+    let mut run = Run::new(&prepared, &columns, query);
+    run.pass(width, &pool());
+    run.hits()
+}
+
+fn traced_by_reference(tracer: &Tracer<'_>, rays: &RaySet, query: Query) -> Hits {
+    let mut run = ReferenceRun::new(tracer, rays, query);
+    run.pass(&pool());
+    run.hits().clone()
 }
 
 fn agrees(path: &Path) {
@@ -50,14 +58,18 @@ fn agrees(path: &Path) {
             if query == Query::Closest {
                 for (row, found) in rays.found.iter().enumerate() {
                     let id = found.id.map_or(Hits::MISS, |id| id.0);
-                    assert_eq!((hits.t[row], hits.id[row]), (found.t, id), "{name}, {kind:?} ray {row}, {width:?}");
+                    assert_eq!(
+                        (hits.t[row], hits.id[row]),
+                        (found.t, id),
+                        "{name}, {kind:?} ray {row}, {width:?}"
+                    );
                 }
             }
             if width == Width::BEST {
                 let errors = HitErrors::measure(&tracer, rays, query, &hits);
                 assert_eq!(errors.mistakes(), 0, "{name}, {kind:?}: {errors:?}");
-                let by_reference = with_tracing(query, |tracing| trace_with_reference(&tracer, rays, tracing));
-                let none = HitErrors::measure(&tracer, rays, query, &by_reference.hits);
+                let by_reference = traced_by_reference(&tracer, rays, query);
+                let none = HitErrors::measure(&tracer, rays, query, &by_reference);
                 assert_eq!(none.false_hits.near_edges + none.false_misses.near_edges + none.mistakes(), 0);
                 assert!(none.t_ulps.is_none_or(|ulps| ulps.max <= 0.5), "{none:?}");
             }
@@ -77,7 +89,9 @@ fn rays_of_the_example_scenes_hit_alone_what_they_hit_in_the_frame() {
 
 #[test]
 fn rays_of_real_scenes_hit_alone_what_they_hit_in_the_frame() {
-    for name in ["spd/balls.nff", "spd/gears.nff", "spd/shells.nff", "spd/tetra.nff", "spd/mount.nff", "bunny.obj"] {
+    for name in
+        ["spd/balls.nff", "spd/gears.nff", "spd/shells.nff", "spd/tetra.nff", "spd/mount.nff", "bunny.obj"]
+    {
         if let Some(path) = real_scenes::file(name) {
             agrees(&path);
         }
@@ -102,8 +116,9 @@ fn rays_with_a_clearance_hit_what_rays_hit_that_know_where_they_start() {
             let (rays, query) = (recorded.of(kind), Query::of(kind));
             let bare = as_from_a_file(&scene, rays);
             let [known, found] = [rays, &bare].map(|rays| traced(&scene, rays, query, Width::BEST));
-            let differing = (0..rays.len())
-                .filter(|&row| known.id[row] != found.id[row] || known.t[row].is_finite() != found.t[row].is_finite());
+            let differing = (0..rays.len()).filter(|&row| {
+                known.id[row] != found.id[row] || known.t[row].is_finite() != found.t[row].is_finite()
+            });
             // What touches the start, at an edge, may lie before or beyond t_min.
             let differing = differing.count();
             assert!(differing * 2000 <= rays.len(), "{name}, {kind:?}: {differing} of {}", rays.len());
@@ -158,8 +173,10 @@ fn what_is_no_ray_hits_nothing_and_its_neighbours_are_none_the_wiser() {
     let stop = AtomicBool::new(false);
     let tracer = Tracer::new(&scene, &stop);
     for query in [Query::Closest, Query::Any] {
-        let by_reference = with_tracing(query, |tracing| trace_with_reference(&tracer, &rays, tracing).hits);
-        for hits in Width::ALL.map(|width| traced(&scene, &rays, query, width)).into_iter().chain([by_reference]) {
+        let by_reference = traced_by_reference(&tracer, &rays, query);
+        for hits in
+            Width::ALL.map(|width| traced(&scene, &rays, query, width)).into_iter().chain([by_reference])
+        {
             for (row, (&t, &id)) in hits.t.iter().zip(&hits.id).enumerate() {
                 let place = row % (hit.len() + 1);
                 let expected = match (hit.get(place), query) {
@@ -176,7 +193,9 @@ fn what_is_no_ray_hits_nothing_and_its_neighbours_are_none_the_wiser() {
 
 #[test]
 fn no_rays_are_traced_in_no_time_and_nothing_is_hit_in_an_empty_scene() {
-    let scene = scene("[image]\nsize = [8, 8]\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 45\n");
+    let scene = scene(
+        "[image]\nsize = [8, 8]\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 45\n",
+    );
     let one = RaySet { rows: vec![[0.0, 0.0, 5.0, 0.0, 0.0, 0.0, -2.0, 1e30]], ..RaySet::default() };
     for rays in [RaySet::default(), one] {
         for query in [Query::Closest, Query::Any] {

@@ -101,7 +101,8 @@ fn hits_up_to_t_min_do_not_count() {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, z));
         geometry.add_polygon(&corners, None, material).unwrap();
     }
-    let first = geometry.add_vertices([[-4.0, -4.0], [4.0, -4.0], [0.0, 4.0]].map(|[x, y]| Vec3::new(x, y, -3.0)));
+    let first =
+        geometry.add_vertices([[-4.0, -4.0], [4.0, -4.0], [0.0, 4.0]].map(|[x, y]| Vec3::new(x, y, -3.0)));
     let first = first.unwrap();
     geometry.add_triangle([first, first + 1, first + 2], None, material).unwrap();
     geometry.add_sphere(Vec3::new(0.25, 0.25, -6.0), 1.0, material).unwrap();
@@ -122,7 +123,8 @@ fn hits_up_to_t_min_do_not_count() {
     for (t_min, t, id) in cases {
         let ray = Query { t_min, ..Query::new(sight) };
         let scale = prepared.scale.factor();
-        let scaled = Query { t_min: t_min * scale, sight: Sight::new(sight.o() * f64::from(scale), sight.d()), ..ray };
+        let scaled =
+            Query { t_min: t_min * scale, sight: Sight::new(sight.o() * f64::from(scale), sight.d()), ..ray };
         let found = scaled.closest::<false>(&prepared.hierarchy);
         assert_eq!((found.0 / scale, found.1), (t, id), "beyond {t_min}");
         assert_same_as_all(&prepared, &[scaled; 70], false);
