@@ -55,7 +55,6 @@ impl<T: Element> Array<'_, T> {
     ///
     /// # Errors
     /// Another shape.
-    #[cfg_attr(not(test), expect(dead_code, reason = "a folder of arrays will be read by rows"))]
     pub(crate) fn rows<const WIDTH: usize>(&self) -> Result<&[[T; WIDTH]], String> {
         if !matches!(*self.shape, [_, width] if width == WIDTH) {
             let shape = shape_text(&self.shape);
