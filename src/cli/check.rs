@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Scene file: .toml, .nff, .obj or .ply
+    /// Scene: a .toml, .nff, .obj or .ply file, or a folder of .npy arrays
     scene: PathBuf,
 }
 

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Scene file: .toml, .nff, .obj or .ply
+    /// Scene: a .toml, .nff, .obj or .ply file, or a folder of .npy arrays
     scene: PathBuf,
     /// Write the same as JSON, to stdout instead of the text if FILE is -
     #[arg(long, value_name = "FILE")]

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Scene file: .toml, .nff, .obj or .ply
+    /// Scene: a .toml, .nff, .obj or .ply file, or a folder of .npy arrays
     scene: PathBuf,
     /// Picture to write: .png (sRGB), .exr or .npy (linear f32)
     #[arg(short, long, value_name = "OUT")]

@@ -16,7 +16,8 @@ pub enum Place {
         /// Column.
         column: usize,
     },
-    /// The element, such as `face 12`, of a file read by a library that gives no line. Counted from 1.
+    /// The element, such as `face 12`, of a file read by a library that gives no line, counted from 1; or the row
+    /// of an array, such as `row 12`, counted from 0.
     Element(String),
 }
 

@@ -2,7 +2,9 @@
 
 use super::error::{InputError, Place};
 use super::number::rounded_3;
-use crate::scene::{Camera, Light, Projection, Rgb};
+use crate::scene::{
+    Camera, Geometry, ImageSettings, Light, Material, Projection, RenderSettings, Rgb, Scene,
+};
 use glam::{DVec3, Vec3};
 use std::path::Path;
 
@@ -35,4 +37,26 @@ pub(super) fn framed(path: &Path, bounds: Option<(DVec3, DVec3)>) -> Result<Fram
     }
     let light = Light::Point { position: at([-1.0, 2.0, 1.5]), intensity: Rgb::ONE };
     Ok(Framing { camera, light })
+}
+
+/// A scene of nothing but geometry and what it is made of: framed, lit, and everything else as it is by default.
+///
+/// # Errors
+/// What cannot be framed.
+pub(super) fn framed_scene(
+    path: &Path,
+    bounds: Option<(DVec3, DVec3)>,
+    geometry: Geometry,
+    materials: Vec<Material>,
+) -> Result<Scene, InputError> {
+    let framing = framed(path, bounds)?;
+    Ok(Scene {
+        image: ImageSettings::default(),
+        render: RenderSettings::default(),
+        camera: framing.camera,
+        ambient: Rgb::ZERO,
+        lights: vec![framing.light],
+        materials,
+        geometry,
+    })
 }

@@ -4,9 +4,11 @@
 //! - `toml`: the project's own format; `nff`: Haines' Neutral File Format
 //! - `mesh`: OBJ with MTL, and PLY, alone or as parts of a scene
 //! - `rays`: recorded rays
+//! - `folder`: a folder of NPY arrays
 //! - `framing`: the camera and the light of a file that has none
 
 mod error;
+mod folder;
 mod framing;
 mod mesh;
 mod nff;
@@ -34,21 +36,22 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads a scene file in the format of its name's ending: `.toml`, `.nff`, `.obj` or `.ply`.
+/// Reads a scene file in the format of its name's ending, `.toml`, `.nff`, `.obj` or `.ply`, or a folder of `.npy` arrays.
 ///
 /// # Errors
 /// The first thing in the file, or in a file that it names, that cannot be opened, parsed or accepted.
 pub fn load(path: &Path) -> Result<Loaded, InputError> {
-    const KNOWN: &str = "a scene file ends in .toml, .nff, .obj or .ply";
+    const KNOWN: &str =
+        "a scene is a file that ends in .toml, .nff, .obj or .ply, or a folder of .npy arrays";
     let refused = |message: String| Err(InputError::refused(path, Place::File, message));
     let mut warnings = Warnings::default();
     let scene = match (extension(path).as_deref(), MeshFormat::of(path)) {
+        _ if path.is_dir() => folder::load(path, &mut warnings),
         (Some("toml"), _) => toml::load(path, &mut warnings),
         (Some("nff"), _) => nff::load(path, &mut warnings),
         (_, Some(format)) => mesh::load_alone(path, format, &mut warnings),
-        _ if path.is_dir() => refused(format!("this is a folder; {KNOWN}")),
         (Some(other), _) => refused(format!("unknown ending `.{other}`; {KNOWN}")),
-        (None, _) => refused(format!("the name has no ending; {KNOWN}")),
+        (None, _) => refused(format!("this is no folder, and the name has no ending; {KNOWN}")),
     }?;
     Ok(Loaded { scene, warnings: warnings.into_list() })
 }

@@ -1,6 +1,6 @@
 //! Every kind of bad input, and the message that the user gets. The messages are kept in a snapshot, to be read whole.
 
-use crate::support::Folder;
+use crate::support::{Folder, npy, npy_floats, npy_indices};
 use std::fmt::Write;
 use wavelane::load::load;
 
@@ -202,6 +202,51 @@ fn ply() {
     ];
     let cases: Vec<(&str, &str)> = cases.iter().map(|(what, content)| (*what, content.as_str())).collect();
     insta::assert_snapshot!(messages("mesh.ply", &cases));
+}
+
+#[test]
+fn folder() {
+    const CORNERS: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let vertices = |rows: &[[f32; 3]]| vec![("vertices.npy", npy_floats(rows))];
+    let with_vertex =
+        |vertex| [vertices(&[CORNERS[0], vertex]), vec![("triangles.npy", npy_indices(&[]))]].concat();
+    let with_triangles = |file| [vertices(&CORNERS), vec![("triangles.npy", file)]].concat();
+    let sphere = |radius| vec![("spheres.npy", npy_floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, radius]]))];
+    let cases = [
+        ("nothing in it", vec![]),
+        ("vertices alone", vertices(&CORNERS)),
+        ("triangles alone", vec![("triangles.npy", npy_indices(&[]))]),
+        ("index out of range", with_triangles(npy_indices(&[[0, 1, 2], [0, 1, 3]]))),
+        ("index -1", with_triangles(npy_indices(&[[0, 1, u32::MAX]]))),
+        ("int64 triangles", with_triangles(npy("<i8", "(1, 3)", vec![0; 24]))),
+        (
+            "float64 vertices",
+            vec![("vertices.npy", npy("<f8", "(1, 3)", vec![0; 24])), ("triangles.npy", vec![])],
+        ),
+        ("triangles of four corners", with_triangles(npy("<u4", "(1, 4)", vec![0; 16]))),
+        ("triangles in one row", with_triangles(npy("<u4", "(6,)", vec![0; 24]))),
+        ("triangles cut off", with_triangles(npy("<u4", "(2, 3)", vec![0; 20]))),
+        ("empty file", with_triangles(vec![])),
+        ("NaN", with_vertex([0.0, f32::NAN, 0.0])),
+        ("infinite", with_vertex([0.0, 0.0, f32::NEG_INFINITY])),
+        ("over 1e18", with_vertex([1.1e18, 0.0, 0.0])),
+        ("radius 0", sphere(0.0)),
+        ("negative radius", sphere(-1.0)),
+        ("radius NaN", sphere(f32::NAN)),
+        ("spheres without radius", vec![("spheres.npy", npy_floats(&[[0.0, 0.0, 0.0]]))]),
+        ("too small to be framed", vec![("spheres.npy", npy_floats(&[[1e6, 1e6, 1e6, 1e-3]]))]),
+    ];
+    let mut all = String::new();
+    for (what, files) in cases {
+        let folder = Folder::new();
+        for (name, content) in files {
+            folder.write(name, content);
+        }
+        let message = load(folder.path()).expect_err(what).to_string();
+        writeln!(all, "# {what}\n{}\n", message.replace(&folder.path().display().to_string(), "FOLDER"))
+            .unwrap();
+    }
+    insta::assert_snapshot!(all);
 }
 
 #[test]

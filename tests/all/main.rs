@@ -11,6 +11,7 @@ mod bad_input;
 mod command_line;
 mod example_scenes;
 mod floor;
+mod folder;
 mod formats;
 mod model;
 mod real_scenes;

@@ -220,6 +220,26 @@ pub(crate) fn ball(center: Vec3, radius: f32, quads: bool) -> String {
     toml
 }
 
+/// An NPY file of float32 rows.
+pub(crate) fn npy_floats<const WIDTH: usize>(rows: &[[f32; WIDTH]]) -> Vec<u8> {
+    let data = rows.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    npy("<f4", &format!("({}, {WIDTH})", rows.len()), data)
+}
+
+/// An NPY file of uint32 rows of three.
+pub(crate) fn npy_indices(rows: &[[u32; 3]]) -> Vec<u8> {
+    let data = rows.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    npy("<u4", &format!("({}, 3)", rows.len()), data)
+}
+
+/// An NPY file of version 1, of a type and a shape as Python writes them.
+pub(crate) fn npy(descr: &str, shape: &str, data: Vec<u8>) -> Vec<u8> {
+    let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
+    let header = format!("{header:<117}\n");
+    let length = u16::try_from(header.len()).unwrap().to_le_bytes();
+    [b"\x93NUMPY\x01\x00".to_vec(), length.to_vec(), header.into_bytes(), data].concat()
+}
+
 /// Runs the program.
 pub(crate) fn wavelane(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_wavelane")).args(arguments).output().unwrap()

@@ -16,8 +16,8 @@ pub(super) use triangles::{MaterialChoice, Mesh, Transform};
 
 use super::error::{InputError, Warnings};
 use super::extension;
-use super::framing::framed;
-use crate::scene::{Geometry, ImageSettings, Material, MaterialId, RenderSettings, Rgb, Scene};
+use super::framing::framed_scene;
+use crate::scene::{Geometry, Material, MaterialId, Scene};
 use std::path::Path;
 
 /// The formats of mesh files.
@@ -64,14 +64,5 @@ pub(super) fn load_alone(
     let choice = MaterialChoice::Own { first: MaterialId(1), otherwise: Some(grey) };
     let mut geometry = Geometry::default();
     mesh.add_to(&mut geometry, &Transform::IDENTITY, choice, warnings)?;
-    let framing = framed(path, mesh.bounds)?;
-    Ok(Scene {
-        image: ImageSettings::default(),
-        render: RenderSettings::default(),
-        camera: framing.camera,
-        ambient: Rgb::ZERO,
-        lights: vec![framing.light],
-        materials,
-        geometry,
-    })
+    framed_scene(path, mesh.bounds, geometry, materials)
 }
