@@ -37,15 +37,18 @@
 
 pub mod cli;
 pub mod film;
+pub mod generate;
 mod kernel;
 pub mod lanes;
 pub mod load;
 mod math;
 pub mod measure;
 pub mod prepare;
+mod random;
 pub mod rays;
 pub mod reference;
 pub mod render;
+pub mod save;
 pub mod scene;
 mod signature;
 mod traverse;
