@@ -38,6 +38,7 @@
 
 pub mod cli;
 pub mod film;
+pub mod generate;
 mod kernel;
 pub mod lanes;
 pub mod load;
@@ -45,9 +46,11 @@ mod math;
 pub mod measure;
 mod npy;
 pub mod prepare;
+mod random;
 pub mod rays;
 pub mod reference;
 pub mod render;
+pub mod save;
 pub mod scene;
 mod signature;
 pub mod trace;

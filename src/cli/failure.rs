@@ -3,6 +3,8 @@
 use crate::film::FilmError;
 use crate::load::{Cause, InputError};
 use crate::render::RenderError;
+use crate::save::SaveError;
+use crate::scene::GeometryProblem;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -16,6 +18,10 @@ pub(super) enum Failure {
     Film(#[from] FilmError),
     #[error(transparent)]
     Render(#[from] RenderError),
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    #[error(transparent)]
+    Generate(#[from] GeometryProblem),
     #[error("{}: cannot be written: {why}", path.display())]
     Write { path: PathBuf, why: io::Error },
     #[error("{0}")]
@@ -33,7 +39,10 @@ impl Failure {
                 Cause::ReadFailed => 1,
                 Cause::Refused => 3,
             },
-            Self::Film(FilmError::Write { .. }) | Self::Write { .. } => 1,
+            Self::Film(FilmError::Write { .. })
+            | Self::Save(SaveError::Write { .. })
+            | Self::Write { .. } => 1,
+            Self::Save(SaveError::UnknownFormat(_) | SaveError::CannotSay { .. }) | Self::Generate(_) => 2,
             Self::Film(FilmError::UnknownFormat(_)) | Self::Usage(_) => 2,
             Self::Film(FilmError::Open { .. } | FilmError::Content { .. }) | Self::Refused(_) => 3,
             Self::Render(RenderError::Region { .. }) => 2,

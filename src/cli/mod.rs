@@ -5,6 +5,7 @@ mod diff;
 mod engine;
 mod explain;
 mod failure;
+mod generate;
 mod interrupt;
 mod output;
 mod progress;
@@ -33,6 +34,8 @@ enum Command {
     Check(check::Arguments),
     /// Say what a scene needs and so what will run: stages, kernels, queues and their bytes
     Explain(explain::Arguments),
+    /// Write a standard scene of a benchmark, of any size, as a scene file
+    Generate(generate::Arguments),
     /// Compare two pictures of the same size
     Diff(diff::Arguments),
 }
@@ -73,6 +76,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Generate(arguments) => generate::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
     };
     match result {

@@ -1,5 +1,6 @@
 //! Where the samples of a pixel lie: a pure function of seed, pixel and sample, so that no order of work can change it.
 
+use crate::random::random_unit;
 use crate::scene::{RenderSettings, Sampling};
 
 /// The samples of every pixel of an image.
@@ -38,21 +39,6 @@ impl SamplePattern {
             Sampling::Jittered => [(p + random(0)) / n, (q + random(1)) / n],
         }
     }
-}
-
-/// A multiple of 2⁻²⁴ in [0, 1) that depends on the words alone.
-fn random_unit(words: [u32; 5]) -> f64 {
-    let hash = words.iter().fold(0, |hash, word| lowbias32((hash ^ word).wrapping_add(0x9E37_79B9)));
-    f64::from(hash >> 8) / f64::from(1 << 24)
-}
-
-/// Source: Wellons, "Prospecting for Hash Functions", 2018, the function he names lowbias32.
-fn lowbias32(mut x: u32) -> u32 {
-    x ^= x >> 16;
-    x = x.wrapping_mul(0x7feb_352d);
-    x ^= x >> 15;
-    x = x.wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
 }
 
 #[cfg(test)]
@@ -120,7 +106,6 @@ mod tests {
     /// Other programs predict these: worked out step by step with 32-bit arithmetic outside this program.
     #[test]
     fn random_samples_follow_the_published_recipe() {
-        assert_eq!((lowbias32(0), lowbias32(1)), (0, 0x688990c0));
         // Seed 7, x 300, y 21, sample 6 of 4 × 4: p = 2, q = 1.
         let [xi, eta] = [1102339.0, 1709377.0].map(|random| random / 16_777_216.0);
         assert_eq!(pattern(Sampling::Random, 4).position(300, 21, 6), [xi, eta]);

@@ -113,6 +113,12 @@ impl Geometry {
         self.spheres.len() + self.triangles.len() + self.polygons.len()
     }
 
+    /// How many primitives have got a number; those that were left out have one too.
+    #[must_use]
+    pub fn numbered_count(&self) -> u32 {
+        self.next_id
+    }
+
     /// Id and material of every primitive that can be hit: spheres, then triangles, then polygons.
     pub fn materials(&self) -> impl Iterator<Item = (PrimitiveId, MaterialId)> {
         let spheres = self.spheres.iter().map(|sphere| (sphere.id, sphere.material));

@@ -1,0 +1,160 @@
+//! Gears that mesh, in a lattice: layers of spur gears, each turning against its four neighbours.
+//!
+//! A gear is a closed solid of 98 polygons: front and back are concave, with 96 corners, and each of its 24 teeth has four
+//! rectangles around. Every other gear is turned by half a tooth. 24 is a multiple of 4, so a tooth faces each of the four
+//! neighbours, or a gap does, and teeth meet gaps.
+
+use crate::math::sin_cos_degrees;
+use crate::scene::{
+    Camera, Dielectric, Fresnel, Geometry, GeometryProblem, ImageSettings, Light, Material, MaterialId,
+    Projection, RenderSettings, Rgb, Scene,
+};
+use glam::{DVec2, Vec3};
+
+const TEETH: u32 = 24;
+/// Front, back, and four sides a tooth.
+const FACES: usize = 2 + 4 * TEETH as usize;
+
+// Lengths in distances between neighbouring axes: 0.5 is the pitch radius.
+const TIP: f64 = 0.54;
+const ROOT: f64 = 0.45;
+const THICKNESS: f64 = 0.4;
+/// From layer to layer.
+const RISE: f64 = 0.6;
+/// Half the width of a tooth at its root and at its tip, degrees around the axis; a tooth and a gap are 15°.
+const HALF_ROOT: f64 = 4.6;
+const HALF_TIP: f64 = 2.0;
+
+/// Where a gear is in the lattice: column, row and layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    x: u32,
+    y: u32,
+    z: u32,
+}
+
+impl Place {
+    /// Three of steel or brass to each of glass, and no two of glass side by side.
+    fn material(self) -> MaterialId {
+        MaterialId(match (self.x + self.y + self.z) % 2 {
+            0 => 2 * ((self.x / 2 + self.y / 2 + self.z) % 2),
+            _ => 1,
+        })
+    }
+}
+
+/// A ground and whole gears, one at least.
+pub(super) fn scene(size: usize) -> Result<Scene, GeometryProblem> {
+    let brass = Material {
+        diffuse: Rgb::new(0.6, 0.4, 0.13),
+        specular: Rgb::splat(0.2),
+        shininess: 40.0,
+        mirror: Rgb::splat(0.2),
+        ..Material::default()
+    };
+    let steel = Material { diffuse: Rgb::new(0.33, 0.37, 0.42), ..brass };
+    let clear = Rgb::new(0.6, 0.85, 0.75);
+    let glass = Material {
+        // A quarter, which is exact: NFF says both as shares of one colour.
+        diffuse: clear / 4.0,
+        specular: Rgb::splat(0.12),
+        shininess: 100.0,
+        mirror: Rgb::splat(0.12),
+        dielectric: Some(Dielectric {
+            ior: 1.1,
+            absorption: Rgb::ZERO,
+            transmission: clear,
+            fresnel: Fresnel::Fixed,
+        }),
+        ..Material::default()
+    };
+    let ground = Material {
+        diffuse: Rgb::new(0.42, 0.36, 0.3),
+        specular: Rgb::splat(0.3),
+        shininess: 20.0,
+        mirror: Rgb::splat(0.3),
+        ..Material::default()
+    };
+    let materials = vec![brass, steel, glass, ground];
+
+    let places = lattice(size.saturating_sub(1));
+    let side = places.iter().map(|place| place.x + 1).max().unwrap_or(1);
+    let mut geometry = Geometry::default();
+    // A material at a time, since NFF can only name the latest.
+    for material in [0, 1, 2].map(MaterialId) {
+        for &place in places.iter().filter(|place| place.material() == material) {
+            add_gear(&mut geometry, place, side, material)?;
+        }
+    }
+    let corners = [[3.0, 3.0, 0.0], [-3.0, 3.0, 0.0], [-3.0, -3.0, 0.0], [3.0, -3.0, 0.0]];
+    geometry.add_polygon(&corners.map(Vec3::from_array), None, MaterialId(3))?;
+
+    let light = |position: [f32; 3]| Light::Point { position: position.into(), intensity: Rgb::splat(0.5) };
+    Ok(Scene {
+        image: ImageSettings { width: 1024, height: 1024, background: Rgb::new(0.3, 0.5, 0.75) },
+        render: RenderSettings { max_depth: 4, ..RenderSettings::default() },
+        camera: Camera {
+            eye: Vec3::new(-1.9, -3.3, 3.0),
+            target: Vec3::new(0.0, 0.0, 0.45),
+            up: Vec3::Z,
+            projection: Projection::PerspectiveAngle { vertical_degrees: 38.0 },
+        },
+        ambient: Rgb::ZERO,
+        lights: [[2.0, -4.0, 5.0], [-4.0, -2.0, 4.0], [-1.0, -5.0, 2.0], [0.5, 3.0, 6.0]].map(light).to_vec(),
+        materials,
+        geometry,
+    })
+}
+
+/// Places for the whole number of gears that comes nearest to `faces`, in layers, about as many as a layer's side has gears.
+fn lattice(faces: usize) -> Vec<Place> {
+    let gears = ((faces + FACES / 2) / FACES).max(1);
+    let mut side = 1;
+    // To the nearest cube: (s + ½)³, doubled.
+    while (2 * side + 1_usize).pow(3) <= 8 * gears {
+        side += 1;
+    }
+    let place = |index: usize| {
+        let [x, y, z] = [index % side, index / side % side, index / (side * side)].map(|n| n as u32);
+        Place { x, y, z }
+    };
+    (0..gears).map(place).collect()
+}
+
+/// The lattice is 2 wide, whatever the number of gears, and rests on the ground with its middle over the origin.
+fn add_gear(
+    geometry: &mut Geometry,
+    place: Place,
+    side: u32,
+    material: MaterialId,
+) -> Result<(), GeometryProblem> {
+    let scale = 2.0 / f64::from(side);
+    let axis = DVec2::new(f64::from(place.x), f64::from(place.y)) - (f64::from(side) - 1.0) / 2.0;
+    let bottom = f64::from(place.z) * RISE;
+    let outline = outline((place.x + place.y) % 2 == 1);
+    let at = |corner: DVec2, height: f64| (scale * (axis + corner).extend(height)).as_vec3();
+
+    let front: Vec<Vec3> = outline.iter().map(|&corner| at(corner, bottom + THICKNESS)).collect();
+    let back: Vec<Vec3> = outline.iter().map(|&corner| at(corner, bottom)).collect();
+    for here in 0..outline.len() {
+        let next = (here + 1) % outline.len();
+        geometry.add_polygon(&[back[here], back[next], front[next], front[here]], None, material)?;
+    }
+    geometry.add_polygon(&front, None, material)?;
+    let from_below: Vec<Vec3> = back.into_iter().rev().collect();
+    geometry.add_polygon(&from_below, None, material)?;
+    Ok(())
+}
+
+/// Corners around the axis, counter-clockwise; `turned` by half a tooth.
+fn outline(turned: bool) -> Vec<DVec2> {
+    let pitch = 360.0 / f64::from(TEETH);
+    let tooth = |tooth: u32| {
+        let middle = (f64::from(tooth) + if turned { 0.5 } else { 0.0 }) * pitch;
+        [(-HALF_ROOT, ROOT), (-HALF_TIP, TIP), (HALF_TIP, TIP), (HALF_ROOT, ROOT)].map(|(off, radius)| {
+            let (sin, cos) = sin_cos_degrees(middle + off);
+            radius * DVec2::new(cos, sin)
+        })
+    };
+    (0..TEETH).flat_map(tooth).collect()
+}

@@ -1,0 +1,148 @@
+//! A landscape of triangles: mountains around a lake, four balls of glass, and the sun.
+//!
+//! The height is a sum of octaves of noise, each of twice the frequency and half the height of the one before, sharpened
+//! into ridges (Musgrave, Kolb and Mace, "The Synthesis and Rendering of Eroded Fractal Terrains", 1989). It is a function
+//! of the place alone: a larger size is the same landscape in smaller triangles.
+
+use super::rounded;
+use crate::random::random_unit;
+use crate::scene::{
+    Camera, Dielectric, Fresnel, Geometry, GeometryProblem, ImageSettings, Light, Material, MaterialId,
+    Projection, RenderSettings, Rgb, Scene,
+};
+use glam::{DVec2, DVec3, Vec3};
+
+const OCTAVES: u32 = 10;
+const WATER_LEVEL: f64 = 0.0;
+/// Four balls and a lake.
+const EXTRAS: usize = 5;
+
+// In the order of `materials`.
+const GRASS: MaterialId = MaterialId(0);
+const ROCK: MaterialId = MaterialId(1);
+const SNOW: MaterialId = MaterialId(2);
+const WATER: MaterialId = MaterialId(3);
+const GLASS: MaterialId = MaterialId(4);
+
+/// Five primitives and a grid of cells of two triangles, one cell at least.
+pub(super) fn scene(size: usize) -> Result<Scene, GeometryProblem> {
+    let mut geometry = Geometry::default();
+    for (center, radius) in [
+        ([-0.18, -0.42, 0.42], 0.13),
+        ([0.04, -0.36, 0.33], 0.08),
+        ([-0.32, -0.3, 0.28], 0.07),
+        ([-0.06, -0.56, 0.27], 0.06),
+    ] {
+        geometry.add_sphere(DVec3::from(center).as_vec3(), rounded(radius), GLASS)?;
+    }
+    add_land(&mut geometry, size.saturating_sub(EXTRAS))?;
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let corners = corners.map(|[x, y]| DVec3::new(x, y, WATER_LEVEL).as_vec3());
+    geometry.add_polygon(&corners, None, WATER)?;
+    Ok(Scene {
+        image: ImageSettings { width: 1024, height: 1024, background: Rgb::new(0.42, 0.6, 0.85) },
+        render: RenderSettings { max_depth: 8, min_weight: 1.0 / 512.0, ..RenderSettings::default() },
+        camera: Camera {
+            eye: Vec3::new(-0.75, -2.0, 1.05),
+            target: Vec3::new(-0.05, 0.0, 0.12),
+            up: Vec3::Z,
+            projection: Projection::PerspectiveAngle { vertical_degrees: 40.0 },
+        },
+        ambient: Rgb::new(0.2, 0.24, 0.3),
+        lights: vec![Light::Directional {
+            direction: Vec3::new(1.0, 0.55, -0.75),
+            intensity: Rgb::new(1.0, 0.95, 0.85),
+        }],
+        materials: materials(),
+        geometry,
+    })
+}
+
+fn materials() -> Vec<Material> {
+    let matte =
+        |color: [f32; 3]| Material { ambient: color.into(), diffuse: color.into(), ..Material::default() };
+    let shiny = Material { specular: Rgb::splat(0.5), shininess: 200.0, ..Material::default() };
+    vec![
+        matte([0.2, 0.3, 0.1]),
+        matte([0.36, 0.3, 0.25]),
+        matte([0.85, 0.87, 0.92]),
+        Material { diffuse: Rgb::new(0.03, 0.09, 0.12), mirror: Rgb::splat(0.55), ..shiny },
+        Material {
+            dielectric: Some(Dielectric {
+                ior: 1.5,
+                absorption: Rgb::new(0.8, 0.3, 0.2),
+                transmission: Rgb::ONE,
+                fresnel: Fresnel::Schlick,
+            }),
+            ..shiny
+        },
+    ]
+}
+
+/// Adds the grid of two triangles a cell that comes nearest to `count`, as square as that allows.
+fn add_land(geometry: &mut Geometry, count: usize) -> Result<(), GeometryProblem> {
+    let columns = (count / 2).isqrt().max(1);
+    let rows = ((count + columns) / (2 * columns)).max(1);
+    let heights = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (row, column)));
+    let corners: Vec<DVec3> = heights
+        .map(|(row, column)| {
+            let place = DVec2::new(column as f64 / columns as f64, row as f64 / rows as f64) * 2.0 - 1.0;
+            place.extend(height(place))
+        })
+        .collect();
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let corner = |right: usize, up: usize| corners[(row + up) * (columns + 1) + column + right];
+        let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+        // The cells' diagonals alternate, so that no direction stands out.
+        let triangles = if (row + column) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        for triangle in triangles {
+            let first = geometry.add_vertices(triangle.map(DVec3::as_vec3))?;
+            geometry.add_triangle([first, first + 1, first + 2], None, cover(triangle))?;
+        }
+    }
+    Ok(())
+}
+
+/// What grows on a triangle: nothing where it is steep, snow where it is high.
+fn cover([a, b, c]: [DVec3; 3]) -> MaterialId {
+    let normal = (b - a).cross(c - a);
+    let height = (a.z + b.z + c.z) / 3.0;
+    if normal.z < 0.62 * normal.length() {
+        ROCK
+    } else if height > 0.3 {
+        SNOW
+    } else if height > 0.16 {
+        ROCK
+    } else {
+        GRASS
+    }
+}
+
+/// Height above the lake's surface at a place in [−1, 1]².
+fn height(place: DVec2) -> f64 {
+    // Turned by an angle of cosine 0.8 and sine 0.6 from octave to octave, so that their lattices do not fall together.
+    let (mut at, mut amplitude, mut sum, mut weight) = (1.4 * place, 1.0, 0.0, 1.0);
+    for octave in 0..OCTAVES {
+        let ridge = 1.0 - (2.0 * noise(at, octave) - 1.0).abs();
+        // Valleys are smooth: where the coarser octaves are low, the finer ones add little.
+        weight *= ridge;
+        sum += amplitude * weight;
+        weight = (2.0 * weight).min(1.0);
+        amplitude /= 2.0;
+        at = 2.0 * DVec2::new(0.8 * at.x - 0.6 * at.y, 0.6 * at.x + 0.8 * at.y);
+    }
+    0.45 * sum - 0.35
+}
+
+/// Random values at the points of the unit lattice, in [0, 1), joined smoothly.
+fn noise(at: DVec2, octave: u32) -> f64 {
+    let corner = at.floor();
+    let value = |right: f64, up: f64| {
+        let word = |coordinate: f64| coordinate as i32 as u32;
+        random_unit([octave, word(corner.x + right), word(corner.y + up)])
+    };
+    let share = at - corner;
+    let share = share * share * share * (share * (6.0 * share - 15.0) + 10.0);
+    let along = |up: f64| value(0.0, up) + share.x * (value(1.0, up) - value(0.0, up));
+    along(0.0) + share.y * (along(1.0) - along(0.0))
+}
