@@ -1,6 +1,7 @@
 //! The command line, a file a command. Results go to stdout or to the named file, everything else to stderr.
 
 mod check;
+mod compare;
 mod diff;
 mod engine;
 mod explain;
@@ -10,6 +11,9 @@ mod interrupt;
 mod output;
 mod progress;
 mod render;
+mod settings;
+mod table;
+mod trace;
 
 use crate::lanes;
 use crate::lanes::Isa;
@@ -34,6 +38,10 @@ enum Command {
     Check(check::Arguments),
     /// Say what a scene needs and so what will run: stages, kernels, queues and their bytes
     Explain(explain::Arguments),
+    /// Compare the speed and the error of every engine on one scene, the f64 reference being the truth
+    Compare(compare::Arguments),
+    /// Trace recorded rays, and say how fast
+    Trace(trace::Arguments),
     /// Write a standard scene of a benchmark, of any size, as a scene file
     Generate(generate::Arguments),
     /// Compare two pictures of the same size
@@ -75,6 +83,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Trace(arguments) => trace::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),

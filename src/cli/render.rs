@@ -2,16 +2,16 @@
 
 use super::engine::EngineArguments;
 use super::progress::{Progress, Style};
+use super::settings::SceneSettings;
 use super::{Failure, interrupt, output};
 use crate::film::{self, BitDepth, Region};
 use crate::lanes::Isa;
 use crate::lanes::Width;
 use crate::load;
-use crate::measure::{self, RenderReport, Seconds};
+use crate::measure::{self, Machine, RenderReport, Seconds};
 use crate::render::{self, RenderOptions, Rendered};
-use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
+use crate::scene::Scene;
 use crate::trace;
-use clap::ValueEnum;
 use std::num::NonZeroU64;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -25,24 +25,11 @@ pub(super) struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     engine: EngineArguments,
-    /// Size of the image, pixels [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<(u32, u32)>,
+    #[command(flatten)]
+    settings: SceneSettings,
     /// Render only this part, pixels from the top left, X1 and Y1 excluded; the file holds the part alone
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
     crop: Option<Region>,
-    /// Where the samples of a pixel lie [default: the scene's]
-    #[arg(long, value_enum)]
-    sampling: Option<SamplingName>,
-    /// n × n samples a pixel, 1–64 [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(RenderSettings::MAX_SAMPLES)))]
-    samples: Option<u32>,
-    /// What random samples start from [default: the scene's]
-    #[arg(long, value_name = "N")]
-    seed: Option<u32>,
-    /// The deepest ray, 0–64; primary rays are depth 0 [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(RenderSettings::MAX_DEPTH)))]
-    max_depth: Option<u32>,
     /// Write the rays of the frame into this folder, by kind: primary.npy, shadow.npy, reflect.npy and refract.npy, of shape
     /// (R, 8), f32: origin xyz, tmin, direction xyz, tmax. They are kept in memory until then: 52 to 64 bytes a ray
     #[arg(long, value_name = "DIR")]
@@ -56,19 +43,6 @@ pub(super) struct Arguments {
     /// Write a report of the run as JSON, to stdout if FILE is -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum SamplingName {
-    Regular,
-    Random,
-    Jittered,
-}
-
-fn size(word: &str) -> Result<(u32, u32), String> {
-    let sides = word.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    let (width, height) = sides.ok_or("a size is written like 800x600")?;
-    ImageSettings::check_size(width, height)
 }
 
 fn crop(word: &str) -> Result<Region, String> {
@@ -86,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut loaded = load::load(&arguments.scene)?;
     output::warnings(&loaded);
     let scene = &mut loaded.scene;
-    apply(arguments, scene);
+    arguments.settings.apply(scene);
     let load = start.elapsed().as_secs_f64();
     film::check_writable(&arguments.output)?;
     output::check_json(arguments.json.as_deref(), &[&arguments.output])?;
@@ -150,24 +124,6 @@ fn check_usage(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The command line's settings take the place of the scene's.
-fn apply(arguments: &Arguments, scene: &mut Scene) {
-    let (image, render) = (&mut scene.image, &mut scene.render);
-    if let Some((width, height)) = arguments.size {
-        (image.width, image.height) = (width, height);
-    }
-    if let Some(sampling) = arguments.sampling {
-        render.sampling = match sampling {
-            SamplingName::Regular => Sampling::Regular,
-            SamplingName::Random => Sampling::Random,
-            SamplingName::Jittered => Sampling::Jittered,
-        };
-    }
-    render.samples = arguments.samples.unwrap_or(render.samples);
-    render.seed = arguments.seed.unwrap_or(render.seed);
-    render.max_depth = arguments.max_depth.unwrap_or(render.max_depth);
-}
-
 fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Seconds) -> RenderReport {
     RenderReport {
         version: env!("CARGO_PKG_VERSION"),
@@ -186,6 +142,7 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         rays: rendered.rays,
         seconds,
         peak_resident_bytes: measure::peak_resident_bytes(),
+        machine: Machine::here_and_now(),
         wavefront: rendered.wavefront.clone(),
     }
 }

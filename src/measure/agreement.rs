@@ -36,14 +36,11 @@ pub struct Distance {
     pub rms: f64,
     /// The largest difference of a channel, linear.
     pub largest: f64,
-    /// Pixels with a channel that differs by more than [`Agreement::LIMIT`].
+    /// Pixels with a channel that differs by more than [`Self::LIMIT`].
     pub pixels_over: u64,
 }
 
 impl Agreement {
-    /// What shows: a step of an 8-bit channel.
-    pub const LIMIT: f64 = 1.0 / 255.0;
-
     /// Renders a scene three times and compares.
     ///
     /// # Errors
@@ -70,7 +67,7 @@ impl Agreement {
             let is_same_tree = exact.signature(x, y) == record.signature;
             let is_over = (0..3).any(|channel| {
                 let [a, b] = [&truth, &found.image].map(|image| f64::from(image.pixels[index][channel]));
-                (a - b).abs() > Self::LIMIT
+                (a - b).abs() > Distance::LIMIT
             });
             [
                 differs && primary.is_certain,
@@ -95,9 +92,14 @@ impl Agreement {
 }
 
 impl Distance {
-    fn between(truth: &Image, image: &Image) -> Self {
+    /// What shows: a step of an 8-bit channel.
+    pub const LIMIT: f64 = 1.0 / 255.0;
+
+    pub(super) const ZERO: Self = Self { rms: 0.0, largest: 0.0, pixels_over: 0 };
+
+    pub(super) fn between(truth: &Image, image: &Image) -> Self {
         let none = Self { rms: f64::NAN, largest: f64::NAN, pixels_over: 0 };
-        Difference::between(truth, image, Agreement::LIMIT).map_or(none, |difference| Self {
+        Difference::between(truth, image, Self::LIMIT).map_or(none, |difference| Self {
             rms: difference.rms,
             largest: difference.largest,
             pixels_over: difference.pixels_over,
@@ -116,7 +118,7 @@ fn rendered(scene: &Scene, engine: Engine) -> Result<Rendered, RenderError> {
     render(scene, &options)
 }
 
-fn picture(scene: &Scene, tracer: &Tracer<'_>) -> Result<Image, RenderError> {
+pub(super) fn picture(scene: &Scene, tracer: &Tracer<'_>) -> Result<Image, RenderError> {
     let region = Region::whole(scene.image.width, scene.image.height);
     let mut image = Image::black(&region).map_err(|_| RenderError::Memory(region.pixels()))?;
     let width = scene.image.width as usize;

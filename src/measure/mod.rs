@@ -1,11 +1,17 @@
 //! What is said of a result: how far two pictures lie apart, and what a run did and how long it took.
 
 mod agreement;
+mod comparison;
 mod difference;
 mod hit_errors;
+mod machine;
 mod report;
+mod spread;
 
 pub use agreement::{Agreement, Distance};
+pub use comparison::{ComparedImages, Comparison, ComparisonOptions, EngineResult};
 pub use difference::{Difference, heat_map};
 pub use hit_errors::{HitErrors, Percentiles, Wrong};
-pub use report::{RenderReport, Seconds, peak_resident_bytes};
+pub use machine::{CacheBytes, Machine, peak_resident_bytes};
+pub use report::{RenderReport, Seconds};
+pub use spread::{Better, Spread};

@@ -62,6 +62,13 @@ impl Hits {
     /// Not the id of a primitive.
     pub const MISS: u32 = u32::MAX;
 
+    /// Whether both say the same, to the bit.
+    #[must_use]
+    pub fn has_same_bits(&self, other: &Self) -> bool {
+        let bits = |hits: &Self| hits.t.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
+        self.id == other.id && bits(self) == bits(other)
+    }
+
     /// How many rays hit something.
     #[must_use]
     pub fn count(&self) -> usize {
