@@ -6,7 +6,7 @@ use crate::film::{self, BitDepth, Region};
 use crate::lanes::Isa;
 use crate::lanes::Width;
 use crate::load;
-use crate::measure::{self, RenderReport, Seconds};
+use crate::measure::{self, Machine, RenderReport, Seconds};
 use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
 use clap::ValueEnum;
@@ -223,6 +223,7 @@ fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Se
         rays: rendered.rays,
         seconds,
         peak_resident_bytes: measure::peak_resident_bytes(),
+        machine: Machine::here_and_now(),
         wavefront: rendered.wavefront.clone(),
     }
 }

@@ -1,5 +1,6 @@
 //! What a run did and how long it took, as JSON.
 
+use super::Machine;
 use crate::lanes::Isa;
 use crate::rays::RayCounts;
 use crate::wavefront::WavefrontReport;
@@ -40,6 +41,8 @@ pub struct RenderReport {
     pub seconds: Seconds,
     /// The most memory that the process has had at one time; none where the system does not say.
     pub peak_resident_bytes: Option<u64>,
+    /// Where and when this was.
+    pub machine: Machine,
     /// What the stages of the wavefront engine did; absent for the reference.
     #[serde(flatten)]
     pub wavefront: Option<WavefrontReport>,
@@ -58,13 +61,4 @@ pub struct Seconds {
     pub write: f64,
     /// From the first to the last.
     pub total: f64,
-}
-
-/// The most memory that this process has had at one time, as Linux says it.
-#[must_use]
-pub fn peak_resident_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
 }
