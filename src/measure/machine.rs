@@ -97,8 +97,9 @@ pub fn peak_resident_bytes() -> Option<u64> {
     bytes_of_file("/proc/self/status", "VmHWM")
 }
 
-/// None for a time before 1970 or after the year 9999.
+/// None where a clock is wrong by more than the library can write: before 1970 or after 9999.
 fn rfc_3339(time: SystemTime) -> Option<String> {
+    time.duration_since(SystemTime::UNIX_EPOCH).ok()?;
     let mut text = String::new();
     write!(text, "{}", humantime::format_rfc3339_seconds(time)).ok()?;
     Some(text)
@@ -184,7 +185,7 @@ mod tests {
         assert_eq!(after(0).as_deref(), Some("1970-01-01T01:01:01Z"));
         // 2000 was a leap year: 30 years of 365 days, and the leap days of 72, 76, 80, 84, 88, 92 and 96.
         assert_eq!(after(30 * 365 + 7 + 31 + 28).as_deref(), Some("2000-02-29T01:01:01Z"));
-        assert_eq!(rfc_3339(SystemTime::UNIX_EPOCH - day), None);
+        assert_eq!((rfc_3339(SystemTime::UNIX_EPOCH - day), after(8100 * 366)), (None, None));
         let now = Machine::here_and_now().utc.unwrap();
         let apart = SystemTime::now().duration_since(humantime::parse_rfc3339(&now).unwrap());
         assert!(apart.is_ok_and(|apart| apart < day), "{now}");

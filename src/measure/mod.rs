@@ -1,4 +1,4 @@
-//! What is said of a result: how far two pictures lie apart, and what a run did and how long it took.
+//! What is said of a result: how far two pictures lie apart; what a run did, how long it took, and where.
 
 mod agreement;
 mod comparison;

@@ -174,6 +174,37 @@ fn the_report_says_what_ran() {
 }
 
 #[test]
+fn the_report_says_where_it_ran() {
+    let place = Workplace::new();
+    let output = place.render("a.png", &["--json", "-", "--progress", "none"]);
+    let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let machine = report["machine"].as_object().unwrap();
+    // What a system does not say is null, and not left out.
+    let keys: Vec<&str> = machine.keys().map(String::as_str).collect();
+    let expected = [
+        "architecture",
+        "cache_bytes",
+        "compiler",
+        "debug_assertions",
+        "isa",
+        "kernel",
+        "logical_processors",
+        "memory_bytes",
+        "operating_system",
+        "opt_level",
+        "processor",
+        "utc",
+        "version",
+    ];
+    assert_eq!(keys, expected);
+    for size in ["l1_data", "l2", "l3"] {
+        assert!(machine["cache_bytes"].as_object().unwrap().contains_key(size), "{size}");
+    }
+    assert_eq!((&machine["isa"], &machine["version"]), (&report["isa"], &report["version"]));
+    assert_eq!(machine["debug_assertions"], cfg!(debug_assertions));
+}
+
+#[test]
 fn progress_goes_to_stderr_as_asked() {
     let place = Workplace::new();
     let output = place.render("a.png", &["--progress", "json", "--json", "-", "--size", "100x100"]);
