@@ -109,16 +109,13 @@ pub(super) fn scene(size: usize) -> Result<Scene, GeometryProblem> {
 /// Places for the whole number of gears that comes nearest to `faces`, in layers, about as many as a layer's side has gears.
 fn lattice(faces: usize) -> Vec<Place> {
     let gears = ((faces + FACES / 2) / FACES).max(1);
-    let mut side = 1;
+    let mut side = 1_u32;
     // To the nearest cube: (s + ½)³, doubled.
-    while (2 * side + 1_usize).pow(3) <= 8 * gears {
+    while (2 * side as usize + 1).pow(3) <= 8 * gears {
         side += 1;
     }
-    let place = |index: usize| {
-        let [x, y, z] = [index % side, index / side % side, index / (side * side)].map(|n| n as u32);
-        Place { x, y, z }
-    };
-    (0..gears).map(place).collect()
+    let layer = |z| (0..side).flat_map(move |y| (0..side).map(move |x| Place { x, y, z }));
+    (0..).flat_map(layer).take(gears).collect()
 }
 
 /// The lattice is 2 wide, whatever the number of gears, and rests on the ground with its middle over the origin.

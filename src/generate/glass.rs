@@ -57,18 +57,18 @@ const LIGHT: MaterialId = MaterialId(6);
 
 /// An eighth of the primitives are the squares of the ground, up to 16 × 16; all others are balls and bubbles.
 pub(super) fn scene(size: usize) -> Result<Scene, GeometryProblem> {
-    let side = (1..=16).rev().find(|side| 8 * side * side <= size).unwrap_or(1);
+    let side = (1..=16_u32).rev().find(|side| (8 * side * side) as usize <= size).unwrap_or(1);
     let mut geometry = Geometry::default();
-    add_balls(&mut geometry, size.saturating_sub(side * side).max(1))?;
-    add_ground(&mut geometry, side as u32)?;
+    add_balls(&mut geometry, size.saturating_sub((side * side) as usize).max(1))?;
+    add_ground(&mut geometry, side)?;
     Ok(Scene {
         image: ImageSettings { width: 1024, height: 1024, background: Rgb::new(0.45, 0.62, 0.85) },
         render: RenderSettings { max_depth: 10, min_weight: 1.0 / 512.0, ..RenderSettings::default() },
         camera: Camera {
-            eye: Vec3::new(1.5, -4.6, 3.4),
-            target: Vec3::new(0.0, -0.15, 0.1),
+            eye: Vec3::new(1.3, -4.9, 3.6),
+            target: Vec3::new(-0.05, -0.1, 0.0),
             up: Vec3::Z,
-            projection: Projection::PerspectiveAngle { vertical_degrees: 40.0 },
+            projection: Projection::PerspectiveAngle { vertical_degrees: 42.0 },
         },
         ambient: Rgb::splat(0.25),
         lights: vec![

@@ -1,6 +1,6 @@
 //! A landscape of triangles: mountains around a lake, four balls of glass, and the sun.
 //!
-//! The height is a sum of octaves of noise, each of twice the frequency and half the height of the one before, sharpened
+//! The height is a sum of octaves of noise, each of twice the frequency of the one before and lower, sharpened
 //! into ridges (Musgrave, Kolb and Mace, "The Synthesis and Rendering of Eroded Fractal Terrains", 1989). It is a function
 //! of the place alone: a larger size is the same landscape in smaller triangles.
 
@@ -13,7 +13,9 @@ use crate::scene::{
 use glam::{DVec2, DVec3, Vec3};
 
 const OCTAVES: u32 = 10;
-const WATER_LEVEL: f64 = 0.0;
+const WATER_LEVEL: f64 = 0.1;
+/// Where the noise has a valley with a lake, and mountains behind it.
+const VIEW: DVec2 = DVec2::new(2.3, 3.7);
 /// Four balls and a lake.
 const EXTRAS: usize = 5;
 
@@ -43,8 +45,8 @@ pub(super) fn scene(size: usize) -> Result<Scene, GeometryProblem> {
         image: ImageSettings { width: 1024, height: 1024, background: Rgb::new(0.42, 0.6, 0.85) },
         render: RenderSettings { max_depth: 8, min_weight: 1.0 / 512.0, ..RenderSettings::default() },
         camera: Camera {
-            eye: Vec3::new(-0.75, -2.0, 1.05),
-            target: Vec3::new(-0.05, 0.0, 0.12),
+            eye: Vec3::new(-0.6, -1.55, 0.9),
+            target: Vec3::new(0.0, 0.0, 0.05),
             up: Vec3::Z,
             projection: Projection::PerspectiveAngle { vertical_degrees: 40.0 },
         },
@@ -79,10 +81,9 @@ fn materials() -> Vec<Material> {
     ]
 }
 
-/// Adds the grid of two triangles a cell that comes nearest to `count`, as square as that allows.
+/// Adds a grid of two triangles a cell.
 fn add_land(geometry: &mut Geometry, count: usize) -> Result<(), GeometryProblem> {
-    let columns = (count / 2).isqrt().max(1);
-    let rows = ((count + columns) / (2 * columns)).max(1);
+    let (columns, rows) = grid(count / 2);
     let heights = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (row, column)));
     let corners: Vec<DVec3> = heights
         .map(|(row, column)| {
@@ -103,6 +104,15 @@ fn add_land(geometry: &mut Geometry, count: usize) -> Result<(), GeometryProblem
     Ok(())
 }
 
+/// Columns and rows whose product comes nearest to the number of cells, of those that are nearly square.
+fn grid(cells: usize) -> (usize, usize) {
+    let root = cells.isqrt().max(1);
+    let rows = |columns: usize| ((cells + columns / 2) / columns).max(1);
+    let miss = |columns: &usize| (columns * rows(*columns)).abs_diff(cells);
+    let columns = (3 * root / 4 + 1..=root).rev().min_by_key(miss).unwrap_or(root);
+    (columns, rows(columns))
+}
+
 /// What grows on a triangle: nothing where it is steep, snow where it is high.
 fn cover([a, b, c]: [DVec3; 3]) -> MaterialId {
     let normal = (b - a).cross(c - a);
@@ -121,23 +131,28 @@ fn cover([a, b, c]: [DVec3; 3]) -> MaterialId {
 /// Height above the lake's surface at a place in [−1, 1]².
 fn height(place: DVec2) -> f64 {
     // Turned by an angle of cosine 0.8 and sine 0.6 from octave to octave, so that their lattices do not fall together.
-    let (mut at, mut amplitude, mut sum, mut weight) = (1.4 * place, 1.0, 0.0, 1.0);
+    let (mut at, mut amplitude, mut sum, mut weight) = (1.4 * place + VIEW, 1.0, 0.0, 1.0);
     for octave in 0..OCTAVES {
         let ridge = 1.0 - (2.0 * noise(at, octave) - 1.0).abs();
         // Valleys are smooth: where the coarser octaves are low, the finer ones add little.
         weight *= ridge;
         sum += amplitude * weight;
         weight = (2.0 * weight).min(1.0);
-        amplitude /= 2.0;
+        amplitude *= 0.45;
         at = 2.0 * DVec2::new(0.8 * at.x - 0.6 * at.y, 0.6 * at.x + 0.8 * at.y);
     }
-    0.45 * sum - 0.35
+    0.34 * sum - 0.2
 }
 
 /// Random values at the points of the unit lattice, in [0, 1), joined smoothly.
 fn noise(at: DVec2, octave: u32) -> f64 {
     let corner = at.floor();
     let value = |right: f64, up: f64| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number of a few thousand at most; its sign is as good a bit as any"
+        )]
         let word = |coordinate: f64| coordinate as i32 as u32;
         random_unit([octave, word(corner.x + right), word(corner.y + up)])
     };

@@ -35,9 +35,8 @@ impl Tetrahedron {
 
     /// Which corner of the whole it belongs to; the first for the whole itself.
     fn nearest_corner(self) -> MaterialId {
-        let along = CORNERS.map(|corner| corner.dot(self.center));
-        let nearest = (1..4).fold(0, |best, corner| if along[corner] > along[best] { corner } else { best });
-        MaterialId(nearest as u32)
+        let along = |corner: u32| CORNERS[corner as usize].dot(self.center);
+        MaterialId((1..4).fold(0, |best, corner| if along(corner) > along(best) { corner } else { best }))
     }
 }
 
@@ -60,13 +59,13 @@ pub(super) fn scene(size: usize) -> Result<Scene, GeometryProblem> {
         image: ImageSettings { width: 1024, height: 1024, background: Rgb::new(0.07, 0.11, 0.2) },
         render: RenderSettings { max_depth: 4, ..RenderSettings::default() },
         camera: Camera {
-            eye: Vec3::new(4.2, 0.9, -0.6),
-            target: Vec3::ZERO,
+            eye: Vec3::new(4.2, -0.3, -1.5),
+            target: Vec3::splat(0.13),
             up: Vec3::ONE,
-            projection: Projection::PerspectiveAngle { vertical_degrees: 40.0 },
+            projection: Projection::PerspectiveAngle { vertical_degrees: 43.0 },
         },
         ambient: Rgb::ZERO,
-        lights: vec![Light::Point { position: Vec3::new(9.0, 4.0, 2.0), intensity: Rgb::ONE }],
+        lights: vec![Light::Point { position: Vec3::new(10.0, 0.0, 2.0), intensity: Rgb::ONE }],
         materials,
         geometry,
     })
