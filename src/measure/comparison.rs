@@ -1,18 +1,19 @@
 //! Speed against error: every engine on one scene, the f64 reference being the truth.
 
-use super::agreement::Distance;
+use super::agreement::{self, Distance};
+use super::race::{Frames, Passes, Race, has_same_bits, mrays_per_second, speed_up};
 use super::{Better, HitErrors, Spread};
-use crate::film::{Image, Region};
+use crate::film::Image;
 use crate::lanes::Width;
 use crate::prepare::Prepared;
-use crate::rays::{RayCounts, RayKind, RaySet, RecordedRays};
+use crate::rays::{RayCounts, RayKind, RaySet};
 use crate::reference::{Precision, Tracer};
-use crate::render::{DEFAULT_BATCH, Engine, RenderError, RenderOptions, Rendered, render};
+use crate::render::{Engine, RenderError};
 use crate::scene::Scene;
-use crate::trace::{Hits, Query, RayColumns, ReferenceRun, Run};
+use crate::trace::{Query, ReferenceRun};
 use serde::Serialize;
+use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How to compare.
@@ -91,55 +92,49 @@ impl Comparison {
         scene: &Scene,
         options: &ComparisonOptions<'_>,
     ) -> Result<(Self, ComparedImages), RenderError> {
-        let mut contest = Contest::new(scene, options)?;
-        let truth = contest.render(Engine::Reference)?;
-        let frames = contest.frames()?;
-        let recorded = contest.record(frames[0].rays)?;
-        let prepared = contest.pool.install(|| Prepared::new(scene))?;
-        let by_kind: Vec<KindResult> = RayKind::ALL
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+        let passes = Race::steps(Width::ALL.len(), options.repeat);
+        let kinds = RayKind::ALL.len() as u64;
+        // The reference's frame, frames, the recording; for each kind of ray passes, the reference's, errors; the floor.
+        let steps = 1 + passes + 1 + kinds * (passes + 2) + 1;
+        let done = Cell::new(0);
+        let step = || (options.on_progress)(done.replace(done.get() + 1) + 1, steps);
+        let race = Race {
+            scene,
+            widths: &Width::ALL,
+            repeat: options.repeat,
+            pool: &pool,
+            stop: options.stop,
+            on_step: &step,
+        };
+
+        let truth = race.render(Engine::Reference)?;
+        step();
+        let frames = race.frames()?;
+        let recorded = race.record(frames[0].last.rays, options.rays)?;
+        step();
+        let prepared = pool.install(|| Prepared::new(scene))?;
+        let traced: Vec<TracedKind> = RayKind::ALL
             .into_iter()
             .filter(|&kind| !recorded.of(kind).is_empty())
-            .map(|kind| contest.kind(&prepared, kind, recorded.of(kind)))
+            .map(|kind| TracedKind::measure(&race, &prepared, kind, recorded.of(kind)))
             .collect();
-        let floor = contest.floor()?;
+        let floor = floor(&race)?;
+        step();
 
-        let truth_seconds = Spread::of(vec![truth.trace_seconds], Better::Less);
-        let reference = EngineResult {
-            engine: "reference",
-            lanes: 1,
-            frame_seconds: truth_seconds,
-            speed_up: ratio(frames[0].seconds, truth_seconds),
-            mrays_per_second: by_kind.iter().map(|of| (of.kind, of.reference)).collect(),
-            hits: BTreeMap::new(),
-            image: Distance::ZERO,
-            same_bits_as_scalar: None,
-        };
-        let wavefront = Width::ALL.into_iter().zip(&frames).enumerate().map(|(index, (width, frame))| {
-            let same_hits = by_kind.iter().all(|of| of.engines[index].same_bits);
-            EngineResult {
-                engine: if width == Width::One { "scalar" } else { "simd" },
-                lanes: width.lanes(),
-                frame_seconds: frame.seconds,
-                speed_up: ratio(frames[0].seconds, frame.seconds),
-                mrays_per_second: by_kind
-                    .iter()
-                    .map(|of| (of.kind, of.engines[index].mrays_per_second))
-                    .collect(),
-                hits: by_kind.iter().map(|of| (of.kind, of.engines[index].errors)).collect(),
-                image: Distance::between(&truth.image, &frame.image),
-                same_bits_as_scalar: Some(same_hits && has_same_bits(&frame.image, &frames[0].image)),
-            }
-        });
+        let mut engines = vec![of_reference(truth.trace_seconds, frames[0].trace_seconds, &traced)];
+        engines.extend((0..frames.len()).map(|turn| of_wavefront(turn, &frames, &truth.image, &traced)));
+        let build_seconds = frames.iter().flat_map(|frames| frames.prepare_seconds.iter().copied()).collect();
         let comparison = Self {
             pixels: truth.image.pixels.len() as u64,
-            frame_rays: frames[0].rays,
+            frame_rays: frames[0].last.rays,
             recorded_rays: recorded.counts(),
-            threads: contest.pool.current_num_threads(),
-            build_seconds: Spread::of(std::mem::take(&mut contest.build_seconds), Better::Less),
-            engines: std::iter::once(reference).chain(wavefront).collect(),
+            threads: pool.current_num_threads(),
+            build_seconds: Spread::of(build_seconds, Better::Less),
+            engines,
             floor: Distance::between(&truth.image, &floor),
         };
-        let engine = frames.into_iter().last().map_or_else(|| floor.clone(), |frame| frame.image);
+        let engine = frames.into_iter().last().map_or_else(|| floor.clone(), |frames| frames.last.image);
         Ok((comparison, ComparedImages { truth: truth.image, floor, engine }))
     }
 
@@ -150,158 +145,66 @@ impl Comparison {
     }
 }
 
-/// The frames of an engine.
-struct Frames {
-    seconds: Option<Spread>,
-    image: Image,
-    rays: RayCounts,
-}
-
-/// A kind of ray, traced by every engine.
-struct KindResult {
+/// Rays of a kind, traced by every engine.
+struct TracedKind {
     kind: RayKind,
     /// Mrays/s.
     reference: Option<Spread>,
-    /// In order of width.
-    engines: Vec<KindOfEngine>,
+    /// By width.
+    passes: Vec<Passes>,
+    errors: Vec<HitErrors>,
 }
 
-struct KindOfEngine {
-    mrays_per_second: Option<Spread>,
-    errors: HitErrors,
-    same_bits: bool,
-}
-
-/// A comparison that is under way.
-struct Contest<'a> {
-    scene: &'a Scene,
-    options: &'a ComparisonOptions<'a>,
-    pool: rayon::ThreadPool,
-    build_seconds: Vec<f64>,
-    steps: u64,
-    steps_done: u64,
-}
-
-impl<'a> Contest<'a> {
-    fn new(scene: &'a Scene, options: &'a ComparisonOptions<'a>) -> Result<Self, RenderError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
-        let rounds = options.repeat as u64 + 1;
-        let engines = Width::ALL.len() as u64;
-        // Frames; of each kind of ray, passes, the reference's and the errors; the truth, the floor and the recording.
-        let kinds = RayKind::ALL.len() as u64;
-        let steps = rounds * engines + kinds * (rounds * engines + 2) + 3;
-        Ok(Self { scene, options, pool, build_seconds: Vec::new(), steps, steps_done: 0 })
-    }
-
-    fn step(&mut self) {
-        self.steps_done += 1;
-        (self.options.on_progress)(self.steps_done, self.steps);
-    }
-
-    fn render(&mut self, engine: Engine) -> Result<Rendered, RenderError> {
-        let options = RenderOptions {
-            engine,
-            region: Region::whole(self.scene.image.width, self.scene.image.height),
-            threads: self.options.threads,
-            on_progress: &|_| {},
-            stop: self.options.stop,
-        };
-        let rendered = render(self.scene, &options)?;
-        self.step();
-        Ok(rendered)
-    }
-
-    /// Frames of every width, in turns, so that what else the machine does falls on all alike.
-    fn frames(&mut self) -> Result<Vec<Frames>, RenderError> {
-        let mut seconds = vec![Vec::new(); Width::ALL.len()];
-        let mut last = Vec::new();
-        for round in 0..=self.options.repeat {
-            last.clear();
-            for (width, seconds) in Width::ALL.into_iter().zip(&mut seconds) {
-                let rendered = self.render(Engine::wavefront(width))?;
-                if round > 0 {
-                    seconds.push(rendered.trace_seconds);
-                    self.build_seconds.push(rendered.prepare_seconds);
-                }
-                last.push((rendered.image, rendered.rays));
-            }
-        }
-        let frames = last.into_iter().zip(seconds);
-        Ok(frames
-            .map(|((image, rays), seconds)| Frames {
-                seconds: Spread::of(seconds, Better::Less),
-                image,
-                rays,
-            })
-            .collect())
-    }
-
-    /// Rays of every n-th tile, so that there are not many more of a kind than asked for.
-    fn record(&mut self, frame: RayCounts) -> Result<RecordedRays, RenderError> {
-        let most = RayKind::ALL.map(|kind| frame.of(kind)).into_iter().fold(0, u64::max);
-        let every = NonZeroU64::new(most.div_ceil(self.options.rays.max(1))).unwrap_or(NonZeroU64::MIN);
-        let engine =
-            Engine::Wavefront { width: Width::BEST, batch: DEFAULT_BATCH, records: false, rays: Some(every) };
-        Ok(self.render(engine)?.recorded)
-    }
-
-    fn kind(&mut self, prepared: &Prepared<'_>, kind: RayKind, rays: &RaySet) -> KindResult {
+impl TracedKind {
+    fn measure(race: &Race<'_>, prepared: &Prepared<'_>, kind: RayKind, rays: &RaySet) -> Self {
         let query = Query::of(kind);
-        let mrays = |seconds: f64| rays.len() as f64 / seconds / 1e6;
-        let columns = RayColumns::new(prepared, rays);
-        let mut run = Run::new(prepared, &columns, query);
-        let mut rates = vec![Vec::new(); Width::ALL.len()];
-        let mut hits: Vec<Hits> = Vec::new();
-        for round in 0..=self.options.repeat {
-            hits.clear();
-            for (width, rates) in Width::ALL.into_iter().zip(&mut rates) {
-                let seconds = run.pass(width, &self.pool);
-                if round > 0 {
-                    rates.push(mrays(seconds));
-                }
-                hits.push(run.hits());
-                self.step();
-            }
-        }
-        let tracer = Tracer::new(self.scene, self.options.stop);
-        let seconds = ReferenceRun::new(&tracer, rays, query).pass(&self.pool);
-        self.step();
-        let of_scalar = self.pool.install(|| HitErrors::measure(&tracer, rays, query, &hits[0]));
-        self.step();
-        let engines = rates.into_iter().zip(&hits).map(|(rates, found)| {
-            let same_bits = found.has_same_bits(&hits[0]);
-            let errors = match same_bits {
-                true => of_scalar,
-                false => self.pool.install(|| HitErrors::measure(&tracer, rays, query, found)),
-            };
-            KindOfEngine { mrays_per_second: Spread::of(rates, Better::More), errors, same_bits }
-        });
-        KindResult {
-            kind,
-            engines: engines.collect(),
-            reference: Spread::of(vec![mrays(seconds)], Better::More),
-        }
-    }
-
-    fn floor(&mut self) -> Result<Image, RenderError> {
-        let tracer = Tracer::with_precision(self.scene, Precision::F32Queues, self.options.stop);
-        let image = self.pool.install(|| super::agreement::picture(self.scene, &tracer))?;
-        if self.options.stop.load(Ordering::Relaxed) {
-            return Err(RenderError::Stopped);
-        }
-        self.step();
-        Ok(image)
+        let passes = race.passes(prepared, query, rays);
+        let tracer = Tracer::new(race.scene, race.stop);
+        let seconds = ReferenceRun::new(&tracer, rays, query).pass(race.pool);
+        (race.on_step)();
+        let measure = |found: &Passes| {
+            race.pool.install(|| HitErrors::measure(&tracer, rays, query, &found.hits))
+        };
+        let of_scalar = measure(&passes[0]);
+        let of_same = |found: &Passes| found.hits.has_same_bits(&passes[0].hits).then_some(of_scalar);
+        let errors = passes.iter().map(|found| of_same(found).unwrap_or_else(|| measure(found))).collect();
+        (race.on_step)();
+        let reference = Spread::of(vec![mrays_per_second(rays, seconds)], Better::More);
+        Self { kind, reference, passes, errors }
     }
 }
 
-/// How many times faster what took `seconds` is than what took `of`.
-fn ratio(of: Option<Spread>, seconds: Option<Spread>) -> Option<f64> {
-    let (of, seconds) = (of?.median, seconds?.median);
-    (seconds > 0.0).then(|| of / seconds)
+fn of_reference(seconds: f64, scalar: Option<Spread>, traced: &[TracedKind]) -> EngineResult {
+    let frame_seconds = Spread::of(vec![seconds], Better::Less);
+    EngineResult {
+        engine: "reference",
+        lanes: 1,
+        frame_seconds,
+        speed_up: speed_up(scalar, frame_seconds),
+        mrays_per_second: traced.iter().map(|of| (of.kind, of.reference)).collect(),
+        hits: BTreeMap::new(),
+        image: Distance::ZERO,
+        same_bits_as_scalar: None,
+    }
 }
 
-fn has_same_bits(a: &Image, b: &Image) -> bool {
-    let bits =
-        |image: &Image| image.pixels.iter().flatten().map(|channel| channel.to_bits()).collect::<Vec<_>>();
-    bits(a) == bits(b)
+fn of_wavefront(turn: usize, frames: &[Frames], truth: &Image, traced: &[TracedKind]) -> EngineResult {
+    let (frame, scalar) = (&frames[turn], &frames[0]);
+    let same_hits = traced.iter().all(|of| of.passes[turn].hits.has_same_bits(&of.passes[0].hits));
+    EngineResult {
+        engine: if Width::ALL[turn] == Width::One { "scalar" } else { "simd" },
+        lanes: Width::ALL[turn].lanes(),
+        frame_seconds: frame.trace_seconds,
+        speed_up: speed_up(scalar.trace_seconds, frame.trace_seconds),
+        mrays_per_second: traced.iter().map(|of| (of.kind, of.passes[turn].mrays_per_second)).collect(),
+        hits: traced.iter().map(|of| (of.kind, of.errors[turn])).collect(),
+        image: Distance::between(truth, &frame.last.image),
+        same_bits_as_scalar: Some(same_hits && has_same_bits(&frame.last.image, &scalar.last.image)),
+    }
+}
+
+fn floor(race: &Race<'_>) -> Result<Image, RenderError> {
+    let tracer = Tracer::with_precision(race.scene, Precision::F32Queues, race.stop);
+    let image = race.pool.install(|| agreement::picture(race.scene, &tracer))?;
+    if race.stop.load(Ordering::Relaxed) { Err(RenderError::Stopped) } else { Ok(image) }
 }

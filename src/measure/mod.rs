@@ -5,6 +5,7 @@ mod comparison;
 mod difference;
 mod hit_errors;
 mod machine;
+mod race;
 mod report;
 mod spread;
 

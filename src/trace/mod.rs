@@ -65,8 +65,7 @@ impl Hits {
     /// Whether both say the same, to the bit.
     #[must_use]
     pub fn has_same_bits(&self, other: &Self) -> bool {
-        let bits = |hits: &Self| hits.t.iter().map(|t| t.to_bits()).collect::<Vec<_>>();
-        self.id == other.id && bits(self) == bits(other)
+        self.id == other.id && bytemuck::cast_slice::<_, u32>(&self.t) == bytemuck::cast_slice::<_, u32>(&other.t)
     }
 
     /// How many rays hit something.

@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 pub struct WavefrontReport {
     /// Seconds of all workers together, by stage.
     pub stage_seconds: BTreeMap<&'static str, f64>,
+    /// How full lanes were, by stage, over all depths; none where a stage has no lanes of its own.
+    pub stage_lanes: BTreeMap<&'static str, Option<LanesReport>>,
     /// Stages at each depth at which they did something, in the order in which rays go through them.
     pub stages: Vec<StageReport>,
     /// What was done, whoever did it.
@@ -89,11 +91,18 @@ impl WavefrontReport {
                 }
             }
         }
+        let lanes = |stage: Stage| {
+            let work = statistics.total(stage);
+            let mut lanes = work.lanes;
+            lanes += work.tests.all();
+            LanesReport::new(&lanes)
+        };
         let seconds = |stage: Stage| statistics.total(stage).time.as_secs_f64();
         let mut tests = statistics.total(Stage::Intersect).tests;
         tests += statistics.total(Stage::Occlude).tests;
         Self {
             stage_seconds: Stage::ALL.into_iter().map(|stage| (stage.name(), seconds(stage))).collect(),
+            stage_lanes: Stage::ALL.into_iter().map(|stage| (stage.name(), lanes(stage))).collect(),
             stages,
             counters: Counters {
                 box_tests: tests.boxes.used,
