@@ -1,5 +1,6 @@
 //! The command line, a file a command. Results go to stdout or to the named file, everything else to stderr.
 
+mod bench;
 mod check;
 mod compare;
 mod diff;
@@ -38,6 +39,8 @@ enum Command {
     Check(check::Arguments),
     /// Say what a scene needs and so what will run: stages, kernels, queues and their bytes
     Explain(explain::Arguments),
+    /// Measure throughput: rays a second by kind, seconds by phase and stage, scalar beside SIMD
+    Bench(bench::Arguments),
     /// Compare the speed and the error of every engine on one scene, the f64 reference being the truth
     Compare(compare::Arguments),
     /// Trace recorded rays, and say how fast
@@ -83,6 +86,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

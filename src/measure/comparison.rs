@@ -162,9 +162,8 @@ impl TracedKind {
         let tracer = Tracer::new(race.scene, race.stop);
         let seconds = ReferenceRun::new(&tracer, rays, query).pass(race.pool);
         (race.on_step)();
-        let measure = |found: &Passes| {
-            race.pool.install(|| HitErrors::measure(&tracer, rays, query, &found.hits))
-        };
+        let measure =
+            |found: &Passes| race.pool.install(|| HitErrors::measure(&tracer, rays, query, &found.hits));
         let of_scalar = measure(&passes[0]);
         let of_same = |found: &Passes| found.hits.has_same_bits(&passes[0].hits).then_some(of_scalar);
         let errors = passes.iter().map(|found| of_same(found).unwrap_or_else(|| measure(found))).collect();

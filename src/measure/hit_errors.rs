@@ -63,7 +63,19 @@ impl HitErrors {
     /// Compares hits with what the reference finds for the same rays.
     #[must_use]
     pub fn measure(tracer: &Tracer<'_>, rays: &RaySet, query: Query, hits: &Hits) -> Self {
-        let rows = (0..rays.len()).into_par_iter();
+        Self::measure_every(1, tracer, rays, query, hits)
+    }
+
+    /// The same for the first of every n rays.
+    #[must_use]
+    pub fn measure_every(
+        every: usize,
+        tracer: &Tracer<'_>,
+        rays: &RaySet,
+        query: Query,
+        hits: &Hits,
+    ) -> Self {
+        let rows = (0..rays.len()).into_par_iter().step_by(every.max(1));
         let tally = rows.fold(Tally::default, |mut tally, row| {
             match query {
                 Query::Closest => tally.closest(tracer, rays, row, hits),

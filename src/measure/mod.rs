@@ -1,6 +1,7 @@
 //! What is said of a result: how far two pictures lie apart; what a run did, how long it took, and where.
 
 mod agreement;
+pub mod bench;
 mod comparison;
 mod difference;
 mod hit_errors;

@@ -65,7 +65,8 @@ impl Hits {
     /// Whether both say the same, to the bit.
     #[must_use]
     pub fn has_same_bits(&self, other: &Self) -> bool {
-        self.id == other.id && bytemuck::cast_slice::<_, u32>(&self.t) == bytemuck::cast_slice::<_, u32>(&other.t)
+        self.id == other.id
+            && bytemuck::cast_slice::<_, u32>(&self.t) == bytemuck::cast_slice::<_, u32>(&other.t)
     }
 
     /// How many rays hit something.

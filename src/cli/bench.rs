@@ -1,0 +1,406 @@
+//! `wavelane bench [SCENE…]`.
+
+use super::progress::{Progress, Style};
+use super::settings::SceneSettings;
+use super::table::{NONE, Table, maybe, number};
+use super::{Failure, interrupt, output};
+use crate::generate::{StandardScene, generate};
+use crate::load;
+use crate::measure::bench::{
+    Baseline, BenchOptions, BenchReport, EngineBench, Growth, PhaseSeconds, SceneBench,
+};
+use crate::measure::{Machine, Spread};
+use crate::rays::RayKind;
+use crate::render::RenderError;
+use crate::save::{self, SaveError};
+use crate::scene::Scene;
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// Scene files [default: a standard set that the program makes, see --only and --sizes]
+    scenes: Vec<PathBuf>,
+    /// Of the standard set, only these scenes
+    #[arg(long, value_name = "NAME,…", value_enum, value_delimiter = ',', conflicts_with = "scenes")]
+    only: Vec<StandardScene>,
+    /// Sizes of the standard set, primitives
+    #[arg(long, value_name = "K,…", value_delimiter = ',', default_values_t = [1000, 10_000, 100_000, 1_000_000],
+          conflicts_with = "scenes", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    sizes: Vec<u32>,
+    #[command(flatten)]
+    settings: SceneSettings,
+    /// Worker threads [default: one a core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Timed frames, and passes over recorded rays, of each engine
+    #[arg(long, value_name = "K", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeat: u32,
+    /// About so many rays of each kind are traced on their own
+    #[arg(long, value_name = "R", default_value = "262144", value_parser = clap::value_parser!(u64).range(1..))]
+    rays: u64,
+    /// How far it is, on stderr
+    #[arg(long, value_enum, default_value = "auto")]
+    progress: Style,
+    /// Write the result as JSON, to stdout instead of the tables if FILE is -
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// An earlier result (--json) to compare with
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Exit with 4 if anything is slower than in the baseline by more than this, in the median and at best
+    #[arg(long, value_name = "P%", value_parser = percent, requires = "baseline")]
+    fail_if_slower: Option<f64>,
+}
+
+/// `5%` as a share.
+fn percent(word: &str) -> Result<f64, String> {
+    let number = word.strip_suffix('%').and_then(|number| number.trim().parse::<f64>().ok());
+    match number {
+        Some(percent) if percent >= 0.0 && percent.is_finite() => Ok(percent / 100.0),
+        _ => Err("it is written as a percentage, like 5%".to_owned()),
+    }
+}
+
+/// Side of the standard set's pictures, pixels.
+const STANDARD_SIDE: u32 = 512;
+/// Of the standard set, cost over pixels and threads is measured on this scene, at its largest size up to a limit.
+const GROWN: (StandardScene, u32) = (StandardScene::Terrain, 100_000);
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let inputs: Vec<&Path> =
+        arguments.scenes.iter().chain(&arguments.baseline).map(PathBuf::as_path).collect();
+    output::check_json(arguments.json.as_deref(), &inputs)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build();
+    let pool = pool.map_err(RenderError::from)?;
+    let baseline = arguments.baseline.as_deref().map(|path| baseline(path, pool.current_num_threads()));
+    let baseline = baseline.transpose()?;
+
+    let report = interrupt::watched(|stop| {
+        let scratch =
+            tempfile::tempdir().map_err(|why| Failure::Write { path: std::env::temp_dir(), why })?;
+        let (work, steps) = work(arguments, &pool);
+        let progress = Progress::new(arguments.progress, steps, "steps");
+        let done = Cell::new(0);
+        let on_step = || progress.report(done.replace(done.get() + 1) + 1);
+        let options = BenchOptions {
+            pool: &pool,
+            repeat: arguments.repeat as usize,
+            rays: arguments.rays,
+            scratch: scratch.path(),
+            on_step: &on_step,
+            stop,
+        };
+        let report = measured(arguments, &work, &options);
+        progress.finish();
+        report
+    })?;
+    interrupt::end_if_asked();
+
+    if let Some(path) = &arguments.json {
+        output::json(&report, path)?;
+    }
+    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
+        output::result(&text(&report).trim_end())?;
+    }
+    let mistakes: u64 = report.scenes.iter().map(SceneBench::mistakes).sum();
+    if mistakes > 0 {
+        return Err(Failure::OverLimit(format!(
+            "{mistakes} rays have an answer that is wrong beyond rounding; `wavelane compare` says more"
+        )));
+    }
+    baseline.map_or(Ok(()), |baseline| hold_against(arguments, &baseline, &report))
+}
+
+fn baseline(path: &Path, threads: usize) -> Result<Baseline, Failure> {
+    let refused = |why: &dyn std::fmt::Display| Failure::Refused(format!("{}: {why}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|why| refused(&format!("cannot be opened: {why}")))?;
+    Baseline::parse(&text, threads).map_err(|why| refused(&why))
+}
+
+/// A scene to be measured.
+enum Work {
+    File(PathBuf),
+    Standard(StandardScene, u32),
+}
+
+/// What is to be done, and in how many steps.
+fn work(arguments: &Arguments, pool: &rayon::ThreadPool) -> (Vec<Work>, u64) {
+    let work: Vec<Work> = if arguments.scenes.is_empty() {
+        let chosen = if arguments.only.is_empty() { &StandardScene::ALL[..] } else { &arguments.only };
+        let mut sizes = arguments.sizes.clone();
+        sizes.sort_unstable();
+        sizes.dedup();
+        chosen.iter().flat_map(|&scene| sizes.iter().map(move |&size| Work::Standard(scene, size))).collect()
+    } else {
+        arguments.scenes.iter().cloned().map(Work::File).collect()
+    };
+    let repeat = arguments.repeat as usize;
+    let grown = work.iter().filter(|work| work.is_grown(arguments)).count() as u64;
+    let threads = Growth::thread_counts(pool).len() as u64 * (repeat as u64 + 1);
+    let growth = grown * (Growth::steps_over_pixels(repeat) + threads);
+    let steps = work.len() as u64 * SceneBench::steps(repeat) + growth;
+    (work, steps)
+}
+
+impl Work {
+    /// Whether cost over pixels and threads is measured on it: on each file, and on one of the standard set.
+    fn is_grown(&self, arguments: &Arguments) -> bool {
+        match self {
+            Self::File(_) => true,
+            Self::Standard(scene, size) => {
+                let chosen = if arguments.only.is_empty() { GROWN.0 } else { arguments.only[0] };
+                let least = arguments.sizes.iter().min().copied();
+                let largest = arguments.sizes.iter().filter(|&&size| size <= GROWN.1).max().copied();
+                *scene == chosen && largest.or(least) == Some(*size)
+            }
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Standard(scene, _) => scene.name().to_owned(),
+        }
+    }
+
+    /// The scene and the seconds to load it. Those of the standard set are written first, as NFF where that can say them.
+    fn load(&self, arguments: &Arguments, scratch: &Path) -> Result<(Scene, f64), Failure> {
+        let path = match self {
+            Self::File(path) => path.clone(),
+            Self::Standard(which, size) => {
+                let scene = generate(*which, *size as usize)?;
+                let nff = scratch.join("scene.nff");
+                match save::save(&scene, &nff) {
+                    Err(SaveError::CannotSay { .. }) => {
+                        let toml = scratch.join("scene.toml");
+                        save::save(&scene, &toml)?;
+                        toml
+                    }
+                    saved => saved.map(|()| nff)?,
+                }
+            }
+        };
+        let start = Instant::now();
+        let loaded = load::load(&path)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let mut scene = loaded.scene;
+        if matches!(self, Self::Standard(..)) {
+            (scene.image.width, scene.image.height) = (STANDARD_SIDE, STANDARD_SIDE);
+        } else {
+            loaded.warnings.iter().for_each(output::diagnostic);
+        }
+        arguments.settings.apply(&mut scene);
+        Ok((scene, seconds))
+    }
+}
+
+fn measured(
+    arguments: &Arguments,
+    work: &[Work],
+    options: &BenchOptions<'_>,
+) -> Result<BenchReport, Failure> {
+    let (mut scenes, mut growth): (Vec<SceneBench>, Vec<Growth>) = Default::default();
+    for work in work {
+        let (scene, load_seconds) = work.load(arguments, options.scratch)?;
+        let name = work.name();
+        scenes.push(SceneBench::measure(&name, &scene, load_seconds, options)?);
+        if work.is_grown(arguments) {
+            growth.push(Growth::over_pixels(&name, &scene, options)?);
+            growth.push(Growth::over_threads(&name, &scene, options)?);
+        }
+    }
+    if arguments.scenes.is_empty() {
+        let of_one_name = scenes.chunk_by(|a, b| a.scene == b.scene);
+        growth.splice(0..0, of_one_name.map(|sizes| Growth::over_primitives(&sizes[0].scene, sizes)));
+    }
+    Ok(BenchReport {
+        format: BenchReport::FORMAT,
+        machine: Machine::here_and_now(),
+        threads: options.pool.current_num_threads(),
+        scenes,
+        growth,
+    })
+}
+
+fn hold_against(arguments: &Arguments, baseline: &Baseline, report: &BenchReport) -> Result<(), Failure> {
+    for doubt in baseline.doubts(report) {
+        output::diagnostic(&format!("warning: {doubt}"));
+    }
+    let changes = baseline.changes(report);
+    let mut table = Table::new(2, ["scene", "", "before", "after", "times slower", "at best"]);
+    for change in &changes {
+        table.push(vec![
+            change.scene.clone(),
+            change.what.clone(),
+            number(change.before),
+            number(change.after),
+            format!("{:.3}", change.slower),
+            format!("{:.3}", change.best_slower),
+        ]);
+    }
+    let words = format!("\nAgainst the baseline.\n\n{}", table.lines());
+    if arguments.json.as_ref().is_some_and(|path| path.as_os_str() == "-") {
+        output::diagnostic(&words.trim_end());
+    } else {
+        output::result(&words.trim_end())?;
+    }
+    let Some(share) = arguments.fail_if_slower else { return Ok(()) };
+    if changes.is_empty() {
+        let message = "nothing in the baseline was measured in this run; compare runs of the same scenes";
+        return Err(Failure::Refused(message.into()));
+    }
+    match changes.iter().filter(|change| change.is_slower(share)).count() {
+        0 => Ok(()),
+        count => Err(Failure::OverLimit(format!(
+            "{count} of {} measurements are slower than in the baseline by more than {} %",
+            changes.len(),
+            number(100.0 * share)
+        ))),
+    }
+}
+
+fn text(report: &BenchReport) -> String {
+    let machine = &report.machine;
+    let mut text = format!(
+        "{}, threads: {}, built for {} by {}\n",
+        machine.processor.as_deref().unwrap_or("unknown processor"),
+        report.threads,
+        machine.isa,
+        machine.compiler.unwrap_or("an unknown compiler"),
+    );
+    text += &speed(report);
+    text += &phases(report);
+    text += &stages(report);
+    text += &growth(report);
+    text
+}
+
+fn median(spread: Option<Spread>) -> Option<f64> {
+    spread.map(|spread| spread.median)
+}
+
+/// A median and how far the repeats lie from it, in the median.
+fn with_spread(spread: Option<Spread>) -> String {
+    spread.map_or_else(
+        || NONE.into(),
+        |spread| {
+            let share = 100.0 * spread.median_absolute_deviation / spread.median;
+            format!("{} ±{share:.0}%", number(spread.median))
+        },
+    )
+}
+
+fn speed(report: &BenchReport) -> String {
+    let heading = ["scene", "engine", "primitives", "frame s", "× scalar"].into_iter();
+    let heading = heading.chain(RayKind::ALL.map(RayKind::name)).chain(["wrong", "t ulp p99"]);
+    let mut table = Table::new(2, heading);
+    for scene in &report.scenes {
+        let mut row = |engine: &EngineBench, name: &str, speed_up: Option<f64>, errors: [String; 2]| {
+            let mut row = vec![
+                scene.scene.clone(),
+                format!("{name} {}", engine.lanes),
+                scene.primitives.to_string(),
+                with_spread(engine.frame_seconds),
+                maybe(speed_up),
+            ];
+            row.extend(
+                RayKind::ALL.map(|kind| with_spread(engine.mrays_per_second.get(&kind).copied().flatten())),
+            );
+            row.extend(errors);
+            table.push(row);
+        };
+        let worst = scene.errors.values().filter_map(|errors| Some(errors.t_ulps?.p99)).reduce(f64::max);
+        // Both give the same bits.
+        let errors = [scene.mistakes().to_string(), maybe(worst)];
+        row(&scene.scalar, "scalar", Some(1.0), errors.clone());
+        row(&scene.simd, "simd", scene.speed_up, errors);
+    }
+    format!(
+        "\nFrames, and rays by kind in Mrays/s, traced on their own: medians, and how far repeats lie from them in the median. \
+         Wrong: of\nsome rays of each kind, those with another answer than the f64 reference's, beyond rounding; t: their error, \
+         units in the last place.\n\n{}",
+        table.lines()
+    )
+}
+
+fn phases(report: &BenchReport) -> String {
+    let heading = [
+        "scene",
+        "primitives",
+        "load",
+        "build",
+        "trace",
+        "shade",
+        "write",
+        "MiB",
+        "bytes/primitive",
+        "KiB/worker",
+    ];
+    let mut table = Table::new(1, heading);
+    for scene in &report.scenes {
+        let PhaseSeconds { load, build, trace, shade, write } = scene.seconds;
+        table.push(vec![
+            scene.scene.clone(),
+            scene.primitives.to_string(),
+            number(load),
+            maybe(median(build)),
+            maybe(trace),
+            maybe(shade),
+            maybe(median(write)),
+            number(scene.memory.hierarchy_bytes as f64 / f64::from(1 << 20)),
+            maybe(scene.memory.bytes_per_primitive),
+            number(scene.memory.queue_bytes_per_worker as f64 / 1024.0),
+        ]);
+    }
+    format!(
+        "\nSeconds by phase, simd; memory of the hierarchy, and of a worker's queues.\n\n{}",
+        table.lines()
+    )
+}
+
+fn stages(report: &BenchReport) -> String {
+    let names: Vec<&str> = report
+        .scenes
+        .first()
+        .map(|scene| scene.simd.stages.iter().map(|stage| stage.stage).collect())
+        .unwrap_or_default();
+    let mut table = Table::new(1, ["scene", "primitives"].into_iter().chain(names));
+    for scene in &report.scenes {
+        let all: f64 = scene.simd.stages.iter().map(|stage| stage.seconds).sum();
+        let mut row = vec![scene.scene.clone(), scene.primitives.to_string()];
+        row.extend(scene.simd.stages.iter().map(|stage| {
+            let share = if all > 0.0 { 100.0 * stage.seconds / all } else { 0.0 };
+            match stage.lanes_in_use {
+                Some(lanes) => format!("{share:.0}% {lanes:.1}"),
+                None => format!("{share:.0}%"),
+            }
+        }));
+        table.push(row);
+    }
+    format!("\nShare of the frame by stage, and lanes in use, simd.\n\n{}", table.lines())
+}
+
+fn growth(report: &BenchReport) -> String {
+    let mut table = Table::new(2, ["scene", "over", "build s", "frame s", "build ~", "frame ~"]);
+    for growth in &report.growth {
+        let series = |of: fn(&crate::measure::bench::GrowthPoint) -> Option<Spread>| {
+            growth.points.iter().map(|point| maybe(median(of(point)))).collect::<Vec<_>>().join(" ")
+        };
+        let counts = growth.points.iter().map(|point| point.count.to_string()).collect::<Vec<_>>().join(" ");
+        table.push(vec![
+            growth.scene.clone(),
+            format!("{} {counts}", growth.over),
+            series(|point| point.build_seconds),
+            series(|point| point.frame_seconds),
+            exponent(growth.build_exponent),
+            exponent(growth.frame_exponent),
+        ]);
+    }
+    format!("\nHow cost grows: seconds, and the power of the count that they follow.\n\n{}", table.lines())
+}
+
+fn exponent(exponent: Option<f64>) -> String {
+    exponent.map_or_else(|| NONE.into(), |exponent| format!("n^{exponent:.2}"))
+}
