@@ -372,8 +372,8 @@ fn stages(report: &BenchReport) -> String {
         let mut row = vec![scene.scene.clone(), scene.primitives.to_string()];
         row.extend(scene.simd.stages.iter().map(|stage| {
             let share = if all > 0.0 { 100.0 * stage.seconds / all } else { 0.0 };
-            match stage.lanes_in_use {
-                Some(lanes) => format!("{share:.0}% {lanes:.1}"),
+            match stage.lanes {
+                Some(lanes) => format!("{share:.0}% {:.1}", lanes.in_use),
                 None => format!("{share:.0}%"),
             }
         }));

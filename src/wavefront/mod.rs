@@ -38,7 +38,7 @@ mod worker;
 
 pub use explain::{Explanation, HierarchyPlan, StagePlan};
 pub use queue::{ColumnPlan, QueuePlan};
-pub use report::{Counters, LanesReport, MemoryReport, StageReport, WavefrontReport};
+pub use report::{Counters, LanesReport, MemoryReport, StageReport, StageTotal, WavefrontReport};
 pub(crate) use statistics::Statistics;
 pub use trail::PixelRecord;
 pub use worker::DEFAULT_BATCH;

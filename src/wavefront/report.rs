@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 pub struct WavefrontReport {
     /// Seconds of all workers together, by stage.
     pub stage_seconds: BTreeMap<&'static str, f64>,
-    /// How full lanes were, by stage, over all depths; none where a stage has no lanes of its own.
-    pub stage_lanes: BTreeMap<&'static str, Option<LanesReport>>,
+    /// All stages over all depths, in the order in which rays go through them.
+    pub stage_totals: Vec<StageTotal>,
     /// Stages at each depth at which they did something, in the order in which rays go through them.
     pub stages: Vec<StageReport>,
     /// What was done, whoever did it.
@@ -34,6 +34,19 @@ pub struct StageReport {
     pub seconds: f64,
     /// Lanes that an operation worked on, and in how many of them there was something, in the mean; none where the stage
     /// has no lanes of its own.
+    pub lanes: Option<LanesReport>,
+}
+
+/// A stage over all depths.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct StageTotal {
+    /// Its name.
+    pub stage: &'static str,
+    /// Rows of the queues that it worked through.
+    pub rows: u64,
+    /// Seconds of all workers together.
+    pub seconds: f64,
+    /// As of [`StageReport`].
     pub lanes: Option<LanesReport>,
 }
 
@@ -91,18 +104,19 @@ impl WavefrontReport {
                 }
             }
         }
-        let lanes = |stage: Stage| {
+        let total = |stage: Stage| {
             let work = statistics.total(stage);
             let mut lanes = work.lanes;
             lanes += work.tests.all();
-            LanesReport::new(&lanes)
+            let seconds = work.time.as_secs_f64();
+            StageTotal { stage: stage.name(), rows: work.rows, seconds, lanes: LanesReport::new(&lanes) }
         };
         let seconds = |stage: Stage| statistics.total(stage).time.as_secs_f64();
         let mut tests = statistics.total(Stage::Intersect).tests;
         tests += statistics.total(Stage::Occlude).tests;
         Self {
             stage_seconds: Stage::ALL.into_iter().map(|stage| (stage.name(), seconds(stage))).collect(),
-            stage_lanes: Stage::ALL.into_iter().map(|stage| (stage.name(), lanes(stage))).collect(),
+            stage_totals: Stage::ALL.into_iter().map(total).collect(),
             stages,
             counters: Counters {
                 box_tests: tests.boxes.used,

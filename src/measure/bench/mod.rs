@@ -10,7 +10,7 @@ mod scene;
 
 pub use baseline::{Baseline, BaselineError, Change};
 pub use growth::{Growth, GrowthPoint};
-pub use scene::{BenchOptions, EngineBench, PhaseSeconds, SceneBench, SceneMemory, StageBench};
+pub use scene::{BenchOptions, EngineBench, PhaseSeconds, SceneBench, SceneMemory};
 
 use super::Machine;
 use serde::Serialize;

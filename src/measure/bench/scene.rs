@@ -10,6 +10,7 @@ use crate::reference::Tracer;
 use crate::render::RenderError;
 use crate::scene::Scene;
 use crate::trace::Query;
+use crate::wavefront::StageTotal;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -84,20 +85,9 @@ pub struct EngineBench {
     /// To trace and shade a frame.
     pub frame_seconds: Option<Spread>,
     /// Of the last frame.
-    pub stages: Vec<StageBench>,
+    pub stages: Vec<StageTotal>,
     /// On recorded rays, by kind; kinds without rays are left out.
     pub mrays_per_second: BTreeMap<RayKind, Option<Spread>>,
-}
-
-/// A stage of the frame, over all depths.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct StageBench {
-    /// Its name.
-    pub stage: &'static str,
-    /// Seconds of all threads together.
-    pub seconds: f64,
-    /// Lanes that held something, in the mean; none where the stage has no lanes of its own.
-    pub lanes_in_use: Option<f64>,
 }
 
 /// Bytes held.
@@ -222,14 +212,9 @@ fn write_seconds(image: &Image, scratch: &Path) -> Option<f64> {
 
 impl EngineBench {
     fn new(width: Width, frames: &Frames, mrays_per_second: BTreeMap<RayKind, Option<Spread>>) -> Self {
-        let stages = frames.last.wavefront.iter().flat_map(|report| {
-            report.stage_seconds.iter().map(|(&stage, &seconds)| {
-                let lanes = report.stage_lanes.get(stage).copied().flatten();
-                StageBench { stage, seconds, lanes_in_use: lanes.map(|lanes| lanes.in_use) }
-            })
-        });
+        let stages = frames.last.wavefront.as_ref().map(|report| report.stage_totals.clone());
         let frame_seconds = frames.trace_seconds;
-        Self { lanes: width.lanes(), frame_seconds, stages: stages.collect(), mrays_per_second }
+        Self { lanes: width.lanes(), frame_seconds, stages: stages.unwrap_or_default(), mrays_per_second }
     }
 }
 
