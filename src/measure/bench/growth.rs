@@ -34,8 +34,8 @@ pub struct GrowthPoint {
     pub frame_seconds: Option<Spread>,
 }
 
-/// Sides of the pictures that pixels grow over.
-const SIDES: [u32; 4] = [256, 512, 1024, 2048];
+/// Quarters of the picture's sides that pixels grow over.
+const QUARTERS: [u32; 4] = [1, 2, 4, 8];
 
 impl Growth {
     fn new(over: &'static str, scene: &str, points: Vec<GrowthPoint>) -> Self {
@@ -65,19 +65,20 @@ impl Growth {
     /// How often [`BenchOptions::on_step`] is called by [`Self::over_pixels`].
     #[must_use]
     pub fn steps_over_pixels(repeat: usize) -> u64 {
-        SIDES.len() as u64 * Race::steps(1, repeat)
+        QUARTERS.len() as u64 * Race::steps(1, repeat)
     }
 
-    /// Square pictures of one scene.
+    /// Pictures of one scene, from a quarter of its sides to twice.
     ///
     /// # Errors
     /// What keeps the wavefront engine from rendering it.
     pub fn over_pixels(name: &str, scene: &Scene, options: &BenchOptions<'_>) -> Result<Self, RenderError> {
         let mut scene = scene.clone();
-        let points = SIDES.into_iter().map(|side| {
-            (scene.image.width, scene.image.height) = (side, side);
-            let pixels = u64::from(side) * u64::from(side);
-            point(pixels, &scene, options.pool, options)
+        let sides = [scene.image.width, scene.image.height];
+        let points = QUARTERS.into_iter().map(|quarters| {
+            let [width, height] = sides.map(|side| (side.saturating_mul(quarters) / 4).max(1));
+            (scene.image.width, scene.image.height) = (width, height);
+            point(u64::from(width) * u64::from(height), &scene, options.pool, options)
         });
         Ok(Self::new("pixels", name, points.collect::<Result<_, _>>()?))
     }

@@ -1,0 +1,168 @@
+//! `trace` and `render --record-rays`: the contract that other tracers are raced by.
+
+use crate::support::{Folder, STILL_LIFE, npy, npy_floats, npy_indices, stderr, stdout, wavelane};
+use serde_json::Value;
+
+/// A square of two triangles in the plane z = 0, and a sphere behind it: ids 0, 1 and 2.
+fn geometry(folder: &Folder) -> String {
+    let square = folder.file("square");
+    std::fs::create_dir(&square).unwrap();
+    let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0_f32]];
+    std::fs::write(square.join("vertices.npy"), npy_floats(&corners)).unwrap();
+    std::fs::write(square.join("triangles.npy"), npy_indices(&[[0, 1, 2], [0, 2, 3]])).unwrap();
+    std::fs::write(square.join("spheres.npy"), npy_floats(&[[0.0, 0.0, -4.0, 2.0_f32]])).unwrap();
+    square.into_os_string().into_string().unwrap()
+}
+
+/// Down from z = 2 with directions of length 2, and where they hit.
+const RAYS: [([f32; 8], f32, u32); 7] = [
+    ([0.5, -0.25, 2.0, 0.0, 0.0, 0.0, -2.0, 1e30], 1.0, 0),
+    ([-0.5, 0.25, 2.0, 0.0, 0.0, 0.0, -2.0, 1e30], 1.0, 1),
+    // Beside the square the sphere is seen, beyond t_min its front or its back.
+    ([0.0, 0.0, 2.0, 1.0, 0.0, 0.0, -2.0, 1e30], 2.0, 2),
+    ([0.0, 0.0, 2.0, 2.0, 0.0, 0.0, -2.0, 1e30], 4.0, 2),
+    // Before t_max there is nothing.
+    ([0.5, -0.25, 2.0, 0.0, 0.0, 0.0, -2.0, 1.0], f32::INFINITY, u32::MAX),
+    ([3.0, 3.0, 2.0, 0.0, 0.0, 0.0, -2.0, 1e30], f32::INFINITY, u32::MAX),
+    ([f32::NAN, 0.0, 2.0, 0.0, 0.0, 0.0, -2.0, 1e30], f32::INFINITY, u32::MAX),
+];
+
+fn rays(folder: &Folder) -> String {
+    let path = folder.write("rays.npy", npy_floats(&RAYS.map(|(ray, ..)| ray)));
+    path.into_os_string().into_string().unwrap()
+}
+
+/// The numbers of an NPY file of one axis, 4 bytes each.
+fn column(path: &std::path::Path, descr: &str, count: usize) -> Vec<[u8; 4]> {
+    let bytes = std::fs::read(path).unwrap();
+    let expected = npy(descr, &format!("({count},)"), Vec::new());
+    assert_eq!(bytes[..expected.len()], expected, "{path:?}");
+    bytes[expected.len()..].as_chunks().0.to_vec()
+}
+
+#[test]
+fn every_engine_finds_what_the_rays_hit() {
+    let folder = Folder::new();
+    let (geometry, rays) = (geometry(&folder), rays(&folder));
+    let prefix = folder.file("out").into_os_string().into_string().unwrap();
+    for (engine, lanes) in [("simd", "4"), ("simd", "8"), ("simd", "16"), ("scalar", "1"), ("reference", "1")]
+    {
+        for query in ["closest", "any"] {
+            let mut arguments =
+                vec!["trace", &geometry, "--rays", &rays, "--query", query, "--engine", engine];
+            arguments.extend([
+                "--repeat",
+                "2",
+                "--threads",
+                "1",
+                "--hits",
+                &prefix,
+                "--json",
+                "-",
+                "--check",
+            ]);
+            if engine == "simd" {
+                arguments.extend(["--lanes", lanes]);
+            }
+            let output = wavelane(&arguments);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            assert!(stderr(&output).contains("1 of 7 rows are no rays"), "{}", stderr(&output));
+
+            let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+            let expected = serde_json::json!({
+                "rays": 7, "unusable_rays": 1, "hits": 4, "query": query, "engine": engine, "threads": 1, "primitives": 3,
+                "lanes": lanes.parse::<u32>().unwrap(),
+            });
+            for (key, value) in expected.as_object().unwrap() {
+                assert_eq!(&report[key], value, "{key} of {engine}");
+            }
+            assert!(report["build_seconds"].as_f64().unwrap() > 0.0);
+            let rate = &report["mrays_per_second"];
+            assert!(rate["best"].as_f64().unwrap() >= rate["median"].as_f64().unwrap());
+            assert_eq!(report["errors"]["false_hits"]["certain"], 0);
+
+            let t = column(&folder.file("out.t.npy"), "<f4", RAYS.len()).into_iter().map(f32::from_le_bytes);
+            let id =
+                column(&folder.file("out.prim.npy"), "<u4", RAYS.len()).into_iter().map(u32::from_le_bytes);
+            for ((t, id), (ray, expected_t, expected_id)) in t.zip(id).zip(RAYS) {
+                let expected = match query {
+                    "any" if expected_id == u32::MAX => (f32::INFINITY, u32::MAX),
+                    "any" => (0.0, u32::MAX),
+                    _ => (expected_t, expected_id),
+                };
+                assert_eq!((t, id), expected, "{engine} {lanes} {query}: {ray:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_no_array_of_rays_is_refused_with_what_would_be_right() {
+    let folder = Folder::new();
+    let geometry = geometry(&folder);
+    for (name, content, message) in [
+        ("empty.npy", npy_floats::<8>(&[]), "there are no rays in it"),
+        ("narrow.npy", npy_floats(&[[0.0_f32; 6]; 2]), "(2, 6); it must be (N, 8)"),
+        ("wide.npy", npy("<f8", "(1, 8)", vec![0; 64]), "float32"),
+        ("cut.npy", npy("<f4", "(2, 8)", vec![0; 60]), "60"),
+        ("text.npy", b"1 2 3".to_vec(), "NPY"),
+    ] {
+        let path = folder.write(name, content).into_os_string().into_string().unwrap();
+        let output = wavelane(&["trace", &geometry, "--rays", &path]);
+        assert_eq!(output.status.code(), Some(3), "{name}: {}", stderr(&output));
+        let said = stderr(&output);
+        assert!(said.starts_with(&format!("{path}: ")) && said.contains(message), "{name}: {said}");
+        assert_eq!(stdout(&output), "");
+    }
+    let missing = wavelane(&["trace", &geometry, "--rays", "/nowhere/rays.npy"]);
+    assert_eq!(missing.status.code(), Some(3), "{}", stderr(&missing));
+    let usage = wavelane(&["trace", &geometry]);
+    assert_eq!(usage.status.code(), Some(2), "{}", stderr(&usage));
+}
+
+#[test]
+fn hits_that_cannot_be_written_are_found_out_before_the_work() {
+    let folder = Folder::new();
+    let (geometry, rays) = (geometry(&folder), rays(&folder));
+    let output = wavelane(&["trace", &geometry, "--rays", &rays, "--hits", "/nowhere/out"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).starts_with("/nowhere/out.t.npy: cannot be written"), "{}", stderr(&output));
+    assert_eq!(stdout(&output), "");
+}
+
+#[test]
+fn a_frame_s_rays_are_written_by_kind_and_can_be_traced() {
+    let folder = Folder::new();
+    let scene = folder.write("scene.toml", STILL_LIFE).into_os_string().into_string().unwrap();
+    let at = |name: &str| folder.file(name).into_os_string().into_string().unwrap();
+    let (picture, recorded) = (at("a.npy"), at("rays"));
+    let arguments = ["render", &scene, "-o", &picture, "--record-rays", &recorded, "--json", "-"];
+    let output = wavelane(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    for kind in ["primary", "shadow", "reflect", "refract"] {
+        let path = at(&format!("rays/{kind}.npy"));
+        let query = if kind == "shadow" { "any" } else { "closest" };
+        let traced =
+            wavelane(&["trace", &scene, "--rays", &path, "--query", query, "--json", "-", "--check"]);
+        assert_eq!(traced.status.code(), Some(0), "{kind}: {}", stderr(&traced));
+        let traced: Value = serde_json::from_str(&stdout(&traced)).unwrap();
+        assert_eq!(traced["rays"], report["rays"][kind], "{kind}");
+        assert!(traced["hits"].as_u64().unwrap() > 0, "{kind}");
+        for wrong in ["false_hits", "false_misses", "other_primitives"] {
+            assert_eq!(traced["errors"][wrong]["certain"], 0, "{kind}: {wrong}");
+        }
+    }
+
+    // Of a frame without secondary rays no file of an earlier frame is left behind.
+    let flat = STILL_LIFE.replace("ior = 1.5", "").replace("mirror = 0.8", "").replace("diffuse = 0.7", "");
+    folder.write("scene.toml", flat);
+    let output = wavelane(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let names: Vec<_> =
+        std::fs::read_dir(folder.file("rays")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names, ["primary.npy"]);
+
+    let by_reference = wavelane(&[&arguments[..], &["--engine", "reference"]].concat());
+    assert_eq!(by_reference.status.code(), Some(2), "{}", stderr(&by_reference));
+}
