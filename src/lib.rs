@@ -14,7 +14,8 @@
 //!   the tests of rays against primitives, a formula a file, and [`lanes`] makes width a type;
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
 //! - [`film`] holds sample positions, pixels and picture files;
-//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
+//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results; [`ray_tree`] is what both engines
+//!   can say of how a pixel came to its colour.
 //!
 //! ```no_run
 //! use std::sync::atomic::AtomicBool;
@@ -43,6 +44,7 @@ pub mod load;
 mod math;
 pub mod measure;
 pub mod prepare;
+pub mod ray_tree;
 pub mod rays;
 pub mod reference;
 pub mod render;

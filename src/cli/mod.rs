@@ -6,6 +6,7 @@ mod explain;
 mod failure;
 mod interrupt;
 mod output;
+mod pixel;
 mod progress;
 mod render;
 

@@ -1,7 +1,7 @@
-//! `wavelane render SCENE -o OUT`.
+//! `wavelane render SCENE -o OUT`, and `--pixel X,Y` instead of `-o OUT`.
 
 use super::progress::{Progress, Style};
-use super::{Failure, interrupt, output};
+use super::{Failure, interrupt, output, pixel};
 use crate::film::{self, BitDepth, Region};
 use crate::lanes::Isa;
 use crate::lanes::Width;
@@ -10,7 +10,7 @@ use crate::measure::{self, RenderReport, Seconds};
 use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::{ImageSettings, RenderSettings, Sampling, Scene};
 use clap::ValueEnum;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
@@ -18,8 +18,8 @@ pub(super) struct Arguments {
     /// Scene file: .toml, .nff, .obj or .ply
     scene: PathBuf,
     /// Picture to write: .png (sRGB), .exr or .npy (linear f32)
-    #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "pixel")]
+    output: Option<PathBuf>,
     /// What traces the rays
     #[arg(long, value_enum, default_value = "simd")]
     engine: Engine,
@@ -35,6 +35,10 @@ pub(super) struct Arguments {
     /// Render only this part, pixels from the top left, X1 and Y1 excluded; the file holds the part alone
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
     crop: Option<Region>,
+    /// Instead of a picture, print every ray of one pixel (from the top left) and what it met, the f64 reference beside the
+    /// engine; --json then writes both trees
+    #[arg(long, value_name = "X,Y", value_parser = pixel::place, conflicts_with_all = ["output", "crop", "bits", "threads", "progress"])]
+    pixel: Option<[u32; 2]>,
     /// Where the samples of a pixel lie [default: the scene's]
     #[arg(long, value_enum)]
     sampling: Option<SamplingName>,
@@ -101,15 +105,43 @@ fn crop(word: &str) -> Result<Region, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    check_usage(arguments)?;
-    let start = Instant::now();
+    if arguments.lanes.is_some() && arguments.engine != Engine::Simd {
+        output::diagnostic(&"warning: --lanes belongs to the simd engine and changes nothing here");
+    }
+    match (arguments.pixel, &arguments.output) {
+        (Some(place), _) => print_pixel(arguments, place),
+        (None, Some(output)) => write_picture(arguments, output),
+        (None, None) => Err(Failure::Usage("a picture to write is missing: -o OUT".to_owned())),
+    }
+}
+
+/// Loads the scene, with the command line's settings in the place of its own.
+fn load_scene(arguments: &Arguments) -> Result<Scene, Failure> {
     let mut loaded = load::load(&arguments.scene)?;
     output::warnings(&loaded);
-    let scene = &mut loaded.scene;
-    apply(arguments, scene);
+    apply(arguments, &mut loaded.scene);
+    Ok(loaded.scene)
+}
+
+fn print_pixel(arguments: &Arguments, place: [u32; 2]) -> Result<(), Failure> {
+    let render::Engine::Wavefront { width, .. } = engine(arguments) else {
+        let message =
+            "--pixel shows an engine beside the reference, which is no such engine: --engine simd or scalar";
+        return Err(Failure::Usage(message.to_owned()));
+    };
+    output::check_json(arguments.json.as_deref(), &[&arguments.scene])?;
+    let scene = load_scene(arguments)?;
+    let engine = pixel::WavefrontEngine { name: arguments.engine.name(), width };
+    pixel::print(&arguments.scene, &scene, place, engine, arguments.json.as_deref())
+}
+
+fn write_picture(arguments: &Arguments, output: &Path) -> Result<(), Failure> {
+    film::Format::of(output)?;
+    let start = Instant::now();
+    let scene = load_scene(arguments)?;
     let load = start.elapsed().as_secs_f64();
-    film::check_writable(&arguments.output)?;
-    output::check_json(arguments.json.as_deref(), &[&arguments.output])?;
+    film::check_writable(output)?;
+    output::check_json(arguments.json.as_deref(), &[output])?;
 
     if let Some(warning) = unused_instructions(arguments.engine, arguments.progress, Isa::of_this_machine()) {
         output::diagnostic(&warning);
@@ -126,7 +158,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             on_progress: &|done| progress.report(done),
             stop,
         };
-        render::render(scene, &options)
+        render::render(&scene, &options)
     });
     progress.finish();
     let rendered = rendered?;
@@ -134,7 +166,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let write_start = Instant::now();
     let depth = if arguments.bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight };
-    film::write(&rendered.image, &arguments.output, depth)?;
+    film::write(&rendered.image, output, depth)?;
     let seconds = Seconds {
         load,
         prepare: rendered.prepare_seconds,
@@ -143,18 +175,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         total: start.elapsed().as_secs_f64(),
     };
     match &arguments.json {
-        Some(path) => output::json(&report(arguments, scene, &rendered, seconds), path),
+        Some(path) => output::json(&report(arguments, output, &scene, &rendered, seconds), path),
         None => Ok(()),
     }
-}
-
-/// What clap cannot see in one argument alone.
-fn check_usage(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.lanes.is_some() && arguments.engine != Engine::Simd {
-        output::diagnostic(&"warning: --lanes belongs to the simd engine and changes nothing here");
-    }
-    film::Format::of(&arguments.output)?;
-    Ok(())
 }
 
 fn engine(arguments: &Arguments) -> render::Engine {
@@ -202,11 +225,17 @@ fn apply(arguments: &Arguments, scene: &mut Scene) {
     render.max_depth = arguments.max_depth.unwrap_or(render.max_depth);
 }
 
-fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Seconds) -> RenderReport {
+fn report(
+    arguments: &Arguments,
+    output: &Path,
+    scene: &Scene,
+    rendered: &Rendered,
+    seconds: Seconds,
+) -> RenderReport {
     RenderReport {
         version: env!("CARGO_PKG_VERSION"),
         scene: arguments.scene.display().to_string(),
-        output: arguments.output.display().to_string(),
+        output: output.display().to_string(),
         engine: arguments.engine.name(),
         lanes: match engine(arguments) {
             render::Engine::Reference => 1,

@@ -13,6 +13,7 @@ mod example_scenes;
 mod floor;
 mod formats;
 mod model;
+mod pixel_tree;
 mod real_scenes;
 mod robustness;
 mod support;
