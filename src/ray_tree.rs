@@ -7,6 +7,7 @@ use crate::rays::RayCounts;
 use crate::scene::{MaterialId, PrimitiveId};
 use crate::signature;
 use serde::Serialize;
+use thiserror::Error;
 
 pub use crate::signature::Shadow;
 
@@ -99,7 +100,28 @@ impl PrimitiveKind {
     }
 }
 
+/// A tree that takes too much memory, and more than anybody reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "the pixel's tree has {entries} entries, one a ray and one for each light of each ray, and at most {} are kept; fewer \
+     --samples or a smaller --max-depth make it smaller",
+    PixelTree::MOST_ENTRIES
+)]
+pub struct TreeTooLarge {
+    /// What it would have.
+    pub entries: u64,
+}
+
 impl PixelTree {
+    /// Rays, and lights of each ray, of the largest tree that is kept: some 100 MB.
+    pub const MOST_ENTRIES: u64 = 1 << 18;
+
+    /// Whether a tree of these rays can be kept.
+    pub(crate) fn check_size(rays: &RayCounts, lights: usize) -> Result<(), TreeTooLarge> {
+        let entries = (rays.primary + rays.reflect + rays.refract).saturating_mul(1 + lights as u64);
+        if entries > Self::MOST_ENTRIES { Err(TreeTooLarge { entries }) } else { Ok(()) }
+    }
+
     /// How many rays of each kind it has.
     #[must_use]
     pub fn rays(&self) -> RayCounts {

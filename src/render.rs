@@ -3,12 +3,12 @@
 use crate::film::{Image, Region};
 use crate::lanes::{self, Single, Width};
 use crate::prepare::{PrepareError, Prepared};
-use crate::ray_tree::PixelTree;
+use crate::ray_tree::{PixelTree, TreeTooLarge};
 use crate::rays::RayCounts;
 use crate::reference::Tracer;
 use crate::scene::{ImageSettings, Scene};
 use crate::traverse::RUN;
-use crate::wavefront::{self, Keep, Statistics, TileGrid, TilePixels, TracedPixel, WavefrontReport, Worker};
+use crate::wavefront::{self, Keep, Statistics, TileGrid, TilePixels, WavefrontReport, Worker};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -112,15 +112,9 @@ pub enum RenderError {
         /// Rows of the image.
         height: u32,
     },
-    /// More than anybody reads.
-    #[error(
-        "the pixel's tree has {rays} rays, and at most {MOST_TREE_RAYS} are kept; fewer --samples or a smaller --max-depth make \
-         it smaller"
-    )]
-    TreeTooLarge {
-        /// Rays of the pixel, all kinds.
-        rays: u64,
-    },
+    /// One pixel's tree of rays does not fit.
+    #[error(transparent)]
+    Tree(#[from] TreeTooLarge),
     /// [`RenderOptions::stop`] was set.
     #[error("interrupted")]
     Stopped,
@@ -146,17 +140,14 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
     }
 }
 
-/// The largest tree of rays that [`pixel_tree`] keeps: some 100 MB.
-pub const MOST_TREE_RAYS: u64 = 1 << 18;
-
 /// Every ray of one pixel, x and y from the full image's top left, and all that it meets: why the pixel is as it is.
 ///
 /// # Errors
-/// A pixel outside the image, a tree of more than [`MOST_TREE_RAYS`], or a render that was told to stop.
+/// A pixel outside the image, a tree that is too large to be kept, or a render that was told to stop.
 pub fn pixel_tree(
     scene: &Scene,
     engine: Engine,
-    [x, y]: [u32; 2],
+    pixel @ [x, y]: [u32; 2],
     stop: &AtomicBool,
 ) -> Result<PixelTree, RenderError> {
     let ImageSettings { width, height, .. } = scene.image;
@@ -168,16 +159,14 @@ pub fn pixel_tree(
             let tracer = Tracer::new(scene, stop);
             let mut counts = RayCounts::default();
             tracer.pixel(x, y, &mut counts);
-            match counts.total() {
-                rays if rays > MOST_TREE_RAYS => Err(RenderError::TreeTooLarge { rays }),
-                _ => Ok(tracer.tree(x, y)),
-            }
+            PixelTree::check_size(&counts, scene.lights.len()).map(|()| tracer.tree(x, y))
         }
         Engine::Wavefront { width, .. } => {
-            width.run(TracePixel { prepared: &Prepared::new(scene)?, pixel: [x, y], stop })
+            let prepared = Prepared::new(scene)?;
+            width.run(TracePixel { prepared: &prepared, pixel, stop })
         }
     };
-    if stop.load(Ordering::Relaxed) { Err(RenderError::Stopped) } else { tree }
+    if stop.load(Ordering::Relaxed) { Err(RenderError::Stopped) } else { Ok(tree?) }
 }
 
 /// One pixel, for lanes of any width.
@@ -188,13 +177,10 @@ struct TracePixel<'a> {
 }
 
 impl lanes::Job for TracePixel<'_> {
-    type Output = Result<PixelTree, RenderError>;
+    type Output = Result<PixelTree, TreeTooLarge>;
 
     fn run<F: Single>(self) -> Self::Output {
-        match wavefront::pixel_tree::<F>(self.prepared, self.pixel, MOST_TREE_RAYS, self.stop) {
-            TracedPixel::Tree(tree) => Ok(tree),
-            TracedPixel::TooLarge(rays) => Err(RenderError::TreeTooLarge { rays }),
-        }
+        wavefront::pixel_tree::<F>(self.prepared, self.pixel, self.stop)
     }
 }
 

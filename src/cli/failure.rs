@@ -38,9 +38,7 @@ impl Failure {
             Self::Film(FilmError::Open { .. } | FilmError::Content { .. }) | Self::Refused(_) => 3,
             Self::Render(RenderError::Region { .. } | RenderError::Pixel { .. }) => 2,
             Self::Render(RenderError::Prepare(_)) => 3,
-            Self::Render(
-                RenderError::Memory(_) | RenderError::TreeTooLarge { .. } | RenderError::Threads(_),
-            ) => 1,
+            Self::Render(RenderError::Memory(_) | RenderError::Tree(_) | RenderError::Threads(_)) => 1,
             Self::Render(RenderError::Stopped) => 130,
             Self::OverLimit(_) => 4,
         }

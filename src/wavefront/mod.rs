@@ -42,6 +42,6 @@ pub use report::{Counters, LanesReport, MemoryReport, StageReport, WavefrontRepo
 pub(crate) use statistics::Statistics;
 pub(crate) use trail::Keep;
 pub use trail::PixelRecord;
-pub(crate) use tree::{TracedPixel, pixel_tree};
+pub(crate) use tree::pixel_tree;
 pub use worker::DEFAULT_BATCH;
 pub(crate) use worker::{TileGrid, TilePixels, Worker};

@@ -9,7 +9,7 @@ use crate::film::Region;
 use crate::lanes::Single;
 use crate::prepare::bvh::Kind;
 use crate::prepare::{Prepared, Scale};
-use crate::ray_tree::{PixelTree, PrimitiveKind, RayTree, TreeHit, TreeLight};
+use crate::ray_tree::{PixelTree, PrimitiveKind, RayTree, TreeHit, TreeLight, TreeTooLarge};
 use crate::scene::{MaterialId, PrimitiveId};
 use crate::signature::Shadow;
 use crate::traverse::{NOTHING, RUN};
@@ -18,35 +18,23 @@ use std::sync::atomic::AtomicBool;
 /// Trees of a level's rays, row by row; none once their parent has taken them.
 pub(super) type Trees = Vec<Option<RayTree>>;
 
-/// What became of the rays of a pixel.
-pub(crate) enum TracedPixel {
-    /// Every ray of it.
-    Tree(PixelTree),
-    /// It has this many rays, which is more than was asked for.
-    TooLarge(u64),
-}
-
-/// Traces one pixel, x and y from the full image's top left, and keeps all of it if it has no more than `most_rays`. Means
+/// Traces one pixel, x and y from the full image's top left: first to see how large its tree is, then to keep it. Means
 /// nothing once it was told to stop.
 pub(crate) fn pixel_tree<F: Single>(
     prepared: &Prepared<'_>,
     [x, y]: [u32; 2],
-    most_rays: u64,
     stop: &AtomicBool,
-) -> TracedPixel {
+) -> Result<PixelTree, TreeTooLarge> {
     // All samples in one batch, so that depth 0 holds them all at the end.
     let batch = (prepared.plan.samples as usize).next_multiple_of(RUN);
     let grid = TileGrid::new(Region { x0: x, y0: y, x1: x + 1, y1: y + 1 }, prepared, batch);
     let mut worker = Worker::new(prepared, batch, Keep::Colours, stop);
     let pixels = worker.tile::<F>(&grid, 0);
-    let rays = worker.statistics.rays.total();
-    if rays > most_rays {
-        return TracedPixel::TooLarge(rays);
-    }
+    PixelTree::check_size(&worker.statistics.rays, prepared.scene.lights.len())?;
     let mut worker = Worker::new(prepared, batch, Keep::Trees, stop);
     worker.tile::<F>(&grid, 0);
     let colour = pixels.colours.first().map_or([0.0; 3], |colour| colour.map(f64::from));
-    TracedPixel::Tree(PixelTree { colour, samples: worker.primary_trees() })
+    Ok(PixelTree { colour, samples: worker.primary_trees() })
 }
 
 /// Begins the tree of each ray of a batch, with what it hit.

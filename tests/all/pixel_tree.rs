@@ -7,10 +7,10 @@ use wavelane::film::Region;
 use wavelane::lanes::Width;
 use wavelane::load::load;
 use wavelane::measure::TreeComparison;
-use wavelane::ray_tree::{PixelTree, RayTree, Shadow};
+use wavelane::ray_tree::{PixelTree, RayTree, Shadow, TreeTooLarge};
 use wavelane::rays::RayCounts;
 use wavelane::reference::Tracer;
-use wavelane::render::{DEFAULT_BATCH, Engine, MOST_TREE_RAYS, RenderError, pixel_tree};
+use wavelane::render::{DEFAULT_BATCH, Engine, RenderError, pixel_tree};
 use wavelane::scene::{Sampling, Scene};
 
 fn tree(scene: &Scene, engine: Engine, place: [u32; 2]) -> PixelTree {
@@ -189,7 +189,10 @@ fn what_cannot_be_shown_is_refused() {
         // Of the glass, from which rays are mirrored on to the end.
         (scene.render.samples, scene.render.max_depth) = (64, 64);
         let found = refusal(&scene, [26, 27], &free);
-        assert!(matches!(found, RenderError::TreeTooLarge { rays } if rays > MOST_TREE_RAYS), "{found}");
+        assert!(
+            matches!(found, RenderError::Tree(TreeTooLarge { entries }) if entries > PixelTree::MOST_ENTRIES),
+            "{found}"
+        );
         (scene.render.samples, scene.render.max_depth) = (1, 8);
     }
 }

@@ -1,5 +1,6 @@
 //! `wavelane render SCENE --pixel X,Y`: why one pixel is as it is.
 
+mod number;
 mod text;
 
 use super::{Failure, interrupt, output};

@@ -1,5 +1,6 @@
 //! Two trees of rays in words.
 
+use super::number::{in_ulps, shortest, significant};
 use crate::film::SamplePattern;
 use crate::measure::{HitDecision, Match, Quantity, RayKind, Reading, Row, TreeComparison};
 use crate::ray_tree::{PixelTree, Shadow};
@@ -139,40 +140,6 @@ fn words(reading: &Reading, digits: Digits) -> String {
         Reading::Traced(false) => "not traced".to_owned(),
     };
     text.trim_end().to_owned()
-}
-
-/// As few digits as tell this f32 from every other one.
-fn shortest(value: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "an f32, or a multiple of one by a power of two")]
-    let value = value as f32;
-    match value.abs() {
-        0.0 => "0".to_owned(),
-        1e-4..1e9 => format!("{value}"),
-        _ => format!("{value:e}"),
-    }
-}
-
-/// A number in nine significant digits, which tell any two f32 apart; one that is not negative leaves room for a sign.
-fn significant(value: f64) -> String {
-    let sign = if value < 0.0 { '-' } else { ' ' };
-    let size = value.abs();
-    if size == 0.0 || !size.is_finite() {
-        return format!("{sign}{size}");
-    }
-    let scientific = format!("{size:.8e}");
-    let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
-    match exponent.and_then(|exponent| usize::try_from(8 - exponent).ok()) {
-        Some(decimals) if decimals <= 11 => format!("{sign}{size:.decimals$}"),
-        _ => format!("{sign}{scientific}"),
-    }
-}
-
-fn in_ulps(ulps: f64) -> String {
-    match ulps {
-        0.0..9.95 => format!("{ulps:.1} ulp"),
-        0.0..1e5 => format!("{ulps:.0} ulp"),
-        _ => format!("{ulps:.1e} ulp"),
-    }
 }
 
 /// Why a surface that mirrors or refracts has no children in the engine's tree, if the limit of depth is why.
@@ -404,21 +371,6 @@ pixel
             ),
         ] {
             assert_eq!(verdict(&compared(reference, engine)), expected);
-        }
-    }
-
-    #[test]
-    fn numbers_keep_nine_digits_at_any_size() {
-        for (value, expected) in [
-            (0.1 + 0.2, " 0.300000000"),
-            (-1234.56789, "-1234.56789"),
-            (0.00123456789, " 0.00123456789"),
-            (1.0e-5 / 3.0, " 3.33333333e-6"),
-            (-2.0e12 / 3.0, "-6.66666667e11"),
-            (-0.0, " 0"),
-            (f64::INFINITY, " inf"),
-        ] {
-            assert_eq!(significant(value), expected);
         }
     }
 }
