@@ -15,7 +15,8 @@
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
 //! - [`mod@trace`] gives recorded [`rays`] to any engine on their own, and takes the time;
 //! - [`film`] holds sample positions, pixels and picture files;
-//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
+//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results; [`ray_tree`] is what both engines
+//!   can say of how a pixel came to its colour.
 //!
 //! ```no_run
 //! use std::sync::atomic::AtomicBool;
@@ -47,6 +48,7 @@ pub mod measure;
 mod npy;
 pub mod prepare;
 mod random;
+pub mod ray_tree;
 pub mod rays;
 pub mod reference;
 pub mod render;

@@ -3,11 +3,12 @@
 use crate::film::{Image, Region};
 use crate::lanes::{self, Single, Width};
 use crate::prepare::{PrepareError, Prepared};
+use crate::ray_tree::{PixelTree, TreeTooLarge};
 use crate::rays::{RayCounts, RecordedRays};
 use crate::reference::Tracer;
-use crate::scene::Scene;
+use crate::scene::{ImageSettings, Scene};
 use crate::traverse::RUN;
-use crate::wavefront::{Statistics, TileGrid, TilePixels, WavefrontReport, Worker};
+use crate::wavefront::{self, Keep, Statistics, TileGrid, TilePixels, WavefrontReport, Worker};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
@@ -100,6 +101,26 @@ pub enum RenderError {
     /// No threads to be had.
     #[error("threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Not a pixel of the image.
+    #[error(
+        "the pixel {x},{y} does not lie within the image of {width} x {height} pixels; the first is 0,0 at the top left and \
+         the last {},{}",
+        width.saturating_sub(1),
+        height.saturating_sub(1)
+    )]
+    Pixel {
+        /// Column that was asked for.
+        x: u32,
+        /// Row that was asked for.
+        y: u32,
+        /// Columns of the image.
+        width: u32,
+        /// Rows of the image.
+        height: u32,
+    },
+    /// One pixel's tree of rays does not fit.
+    #[error(transparent)]
+    Tree(#[from] TreeTooLarge),
     /// [`RenderOptions::stop`] was set.
     #[error("interrupted")]
     Stopped,
@@ -122,6 +143,50 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
             let batch = batch.max(1).next_multiple_of(RUN);
             with_wavefront(scene, options, &pool, image, (width, batch, records, rays))
         }
+    }
+}
+
+/// Every ray of one pixel, x and y from the full image's top left, and all that it meets: why the pixel is as it is.
+///
+/// # Errors
+/// A pixel outside the image, a tree that is too large to be kept, or a render that was told to stop.
+pub fn pixel_tree(
+    scene: &Scene,
+    engine: Engine,
+    pixel @ [x, y]: [u32; 2],
+    stop: &AtomicBool,
+) -> Result<PixelTree, RenderError> {
+    let ImageSettings { width, height, .. } = scene.image;
+    if x >= width || y >= height {
+        return Err(RenderError::Pixel { x, y, width, height });
+    }
+    let tree = match engine {
+        Engine::Reference => {
+            let tracer = Tracer::new(scene, stop);
+            let mut counts = RayCounts::default();
+            tracer.pixel(x, y, &mut counts);
+            PixelTree::check_size(&counts, scene.lights.len()).map(|()| tracer.tree(x, y))
+        }
+        Engine::Wavefront { width, .. } => {
+            let prepared = Prepared::new(scene)?;
+            width.run(TracePixel { prepared: &prepared, pixel, stop })
+        }
+    };
+    if stop.load(Ordering::Relaxed) { Err(RenderError::Stopped) } else { Ok(tree?) }
+}
+
+/// One pixel, for lanes of any width.
+struct TracePixel<'a> {
+    prepared: &'a Prepared<'a>,
+    pixel: [u32; 2],
+    stop: &'a AtomicBool,
+}
+
+impl lanes::Job for TracePixel<'_> {
+    type Output = Result<PixelTree, TreeTooLarge>;
+
+    fn run<F: Single>(self) -> Self::Output {
+        wavefront::pixel_tree::<F>(self.prepared, self.pixel, self.stop)
     }
 }
 
@@ -272,8 +337,8 @@ impl lanes::Job for RunWorker<'_> {
 
     fn run<F: Single>(self) -> Self::Output {
         let RunWorker(render) = self;
-        let mut worker =
-            Worker::new(render.prepared, render.batch, render.wants_records, render.options.stop);
+        let keep = if render.wants_records { Keep::Signatures } else { Keep::Colours };
+        let mut worker = Worker::new(render.prepared, render.batch, keep, render.options.stop);
         loop {
             let index = render.next.fetch_add(1, Ordering::Relaxed);
             if index >= render.grid.count() || render.options.stop.load(Ordering::Relaxed) {

@@ -16,10 +16,12 @@
 //! into parents from the deepest rays up.
 
 use crate::scene::PrimitiveId;
+use serde::Serialize;
 
 /// What became of a hit's question for one light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shadow {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shadow {
     /// A shadow ray reached the light.
     Visible = 1,
     /// A shadow ray was stopped.

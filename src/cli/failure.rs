@@ -45,9 +45,9 @@ impl Failure {
             Self::Save(SaveError::UnknownFormat(_) | SaveError::CannotSay { .. }) | Self::Generate(_) => 2,
             Self::Film(FilmError::UnknownFormat(_)) | Self::Usage(_) => 2,
             Self::Film(FilmError::Open { .. } | FilmError::Content { .. }) | Self::Refused(_) => 3,
-            Self::Render(RenderError::Region { .. }) => 2,
+            Self::Render(RenderError::Region { .. } | RenderError::Pixel { .. }) => 2,
             Self::Render(RenderError::Prepare(_)) => 3,
-            Self::Render(RenderError::Memory(_) | RenderError::Threads(_)) => 1,
+            Self::Render(RenderError::Memory(_) | RenderError::Tree(_) | RenderError::Threads(_)) => 1,
             Self::Render(RenderError::Stopped) => 130,
             Self::OverLimit(_) => 4,
         }

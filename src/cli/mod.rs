@@ -10,6 +10,7 @@ mod failure;
 mod generate;
 mod interrupt;
 mod output;
+mod pixel;
 mod progress;
 mod render;
 mod settings;

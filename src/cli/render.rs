@@ -1,9 +1,9 @@
-//! `wavelane render SCENE -o OUT`.
+//! `wavelane render SCENE -o OUT`, and `--pixel X,Y` instead of `-o OUT`.
 
 use super::engine::EngineArguments;
 use super::progress::{Progress, Style};
 use super::settings::SceneSettings;
-use super::{Failure, interrupt, output};
+use super::{Failure, interrupt, output, pixel};
 use crate::film::{self, BitDepth, Region};
 use crate::lanes::Isa;
 use crate::lanes::Width;
@@ -13,7 +13,7 @@ use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::Scene;
 use crate::trace;
 use std::num::NonZeroU64;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
@@ -21,8 +21,8 @@ pub(super) struct Arguments {
     /// Scene: a .toml, .nff, .obj or .ply file, or a folder of .npy arrays
     scene: PathBuf,
     /// Picture to write: .png (sRGB), .exr or .npy (linear f32)
-    #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "pixel")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineArguments,
     #[command(flatten)]
@@ -30,6 +30,11 @@ pub(super) struct Arguments {
     /// Render only this part, pixels from the top left, X1 and Y1 excluded; the file holds the part alone
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
     crop: Option<Region>,
+    /// Instead of a picture, print every ray of one pixel (from the top left) and what it met, the f64 reference beside the
+    /// engine; --json then writes both trees
+    #[arg(long, value_name = "X,Y", value_parser = pixel::place,
+          conflicts_with_all = ["output", "crop", "bits", "threads", "progress", "record_rays"])]
+    pixel: Option<[u32; 2]>,
     /// Write the rays of the frame into this folder, by kind: primary.npy, shadow.npy, reflect.npy and refract.npy, of shape
     /// (R, 8), f32: origin xyz, tmin, direction xyz, tmax. They are kept in memory until then: 52 to 64 bytes a ray
     #[arg(long, value_name = "DIR")]
@@ -55,15 +60,46 @@ fn crop(word: &str) -> Result<Region, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    check_usage(arguments)?;
-    let start = Instant::now();
+    arguments.engine.warn_of_useless_lanes();
+    match (arguments.pixel, &arguments.output) {
+        (Some(place), _) => print_pixel(arguments, place),
+        (None, Some(output)) => write_picture(arguments, output),
+        (None, None) => Err(Failure::Usage("a picture to write is missing: -o OUT".to_owned())),
+    }
+}
+
+/// Loads the scene, with the command line's settings in the place of its own.
+fn load_scene(arguments: &Arguments) -> Result<Scene, Failure> {
     let mut loaded = load::load(&arguments.scene)?;
     output::warnings(&loaded);
-    let scene = &mut loaded.scene;
-    arguments.settings.apply(scene);
+    arguments.settings.apply(&mut loaded.scene);
+    Ok(loaded.scene)
+}
+
+fn print_pixel(arguments: &Arguments, place: [u32; 2]) -> Result<(), Failure> {
+    let Some(width) = arguments.engine.width() else {
+        let message =
+            "--pixel shows an engine beside the reference, which is no such engine: --engine simd or scalar";
+        return Err(Failure::Usage(message.to_owned()));
+    };
+    output::check_json(arguments.json.as_deref(), &[&arguments.scene])?;
+    let scene = load_scene(arguments)?;
+    let engine = pixel::WavefrontEngine { name: arguments.engine.name(), width };
+    pixel::print(&arguments.scene, &scene, place, engine, arguments.json.as_deref())
+}
+
+fn write_picture(arguments: &Arguments, output: &Path) -> Result<(), Failure> {
+    film::Format::of(output)?;
+    if arguments.record_rays.is_some() && arguments.engine.width().is_none() {
+        let message =
+            "--record-rays: rays are recorded from the simd or the scalar engine, not from the reference";
+        return Err(Failure::Usage(message.into()));
+    }
+    let start = Instant::now();
+    let scene = load_scene(arguments)?;
     let load = start.elapsed().as_secs_f64();
-    film::check_writable(&arguments.output)?;
-    output::check_json(arguments.json.as_deref(), &[&arguments.output])?;
+    film::check_writable(output)?;
+    output::check_json(arguments.json.as_deref(), &[output])?;
 
     arguments.engine.warn_of_unused_instructions(arguments.progress);
 
@@ -86,7 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             on_progress: &|done| progress.report(done),
             stop,
         };
-        render::render(scene, &options)
+        render::render(&scene, &options)
     });
     progress.finish();
     let rendered = rendered?;
@@ -94,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let write_start = Instant::now();
     let depth = if arguments.bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight };
-    film::write(&rendered.image, &arguments.output, depth)?;
+    film::write(&rendered.image, output, depth)?;
     if let Some(folder) = &arguments.record_rays {
         trace::write_rays(&scene.geometry, &rendered.recorded, folder)
             .map_err(|(path, why)| Failure::Write { path, why })?;
@@ -107,28 +143,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         total: start.elapsed().as_secs_f64(),
     };
     match &arguments.json {
-        Some(path) => output::json(&report(arguments, scene, &rendered, seconds), path),
+        Some(path) => output::json(&report(arguments, output, &scene, &rendered, seconds), path),
         None => Ok(()),
     }
 }
 
-/// What clap cannot see in one argument alone.
-fn check_usage(arguments: &Arguments) -> Result<(), Failure> {
-    arguments.engine.warn_of_useless_lanes();
-    film::Format::of(&arguments.output)?;
-    if arguments.record_rays.is_some() && arguments.engine.width().is_none() {
-        let message =
-            "--record-rays: rays are recorded from the simd or the scalar engine, not from the reference";
-        return Err(Failure::Usage(message.into()));
-    }
-    Ok(())
-}
-
-fn report(arguments: &Arguments, scene: &Scene, rendered: &Rendered, seconds: Seconds) -> RenderReport {
+fn report(
+    arguments: &Arguments,
+    output: &Path,
+    scene: &Scene,
+    rendered: &Rendered,
+    seconds: Seconds,
+) -> RenderReport {
     RenderReport {
         version: env!("CARGO_PKG_VERSION"),
         scene: arguments.scene.display().to_string(),
-        output: arguments.output.display().to_string(),
+        output: output.display().to_string(),
         engine: arguments.engine.name(),
         lanes: arguments.engine.width().map_or(1, Width::lanes),
         isa: Isa::BUILT_FOR,

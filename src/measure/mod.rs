@@ -1,4 +1,5 @@
-//! What is said of a result: how far two pictures lie apart; what a run did, how long it took, and where.
+//! What is said of a result: how far two pictures lie apart; what a run did, how long it took, and where; where two engines
+//! part over one pixel.
 
 mod agreement;
 pub mod bench;
@@ -9,6 +10,7 @@ mod machine;
 mod race;
 mod report;
 mod spread;
+mod tree_comparison;
 
 pub use agreement::{Agreement, Distance};
 pub use comparison::{ComparedImages, Comparison, ComparisonOptions, EngineResult};
@@ -17,3 +19,4 @@ pub use hit_errors::{HitErrors, Percentiles, Wrong};
 pub use machine::{CacheBytes, Machine, peak_resident_bytes};
 pub use report::{RenderReport, Seconds};
 pub use spread::{Better, Spread};
+pub use tree_comparison::{HitDecision, Match, Quantity, Reading, Row, TreeComparison};

@@ -6,7 +6,7 @@
 //!
 //! To judge an engine in single precision, it also says how near such an engine can come ([`Precision::F32Queues`]), where
 //! it has to see what the truth is ([`Tracer::primary_hit`]), and whether it decided alike all the way
-//! ([`Tracer::signature`]).
+//! ([`Tracer::signature`]). To find out where it did not, [`Tracer::tree`] shows everything that a pixel's rays met.
 //!
 //! - `camera`: from a point of the image to a ray
 //! - `shape`: where a ray meets a sphere, a triangle or a polygon, and what the surface is like there

@@ -6,9 +6,10 @@ use super::hierarchy::{Hierarchy, Hit};
 use super::optics::{Boundary, beer, mirrored};
 use super::precision::Precision;
 use super::ray::{Departure, Ray};
-use super::record::Record;
+use super::record::{Arrival, Ending, Record, TreeRecord};
 use super::shape::{Meeting, Primitive, Surface};
 use crate::film::SamplePattern;
+use crate::ray_tree::PixelTree;
 use crate::rays::RayCounts;
 use crate::scene::{Light, Material, Scene};
 use crate::signature::{self, Shadow};
@@ -100,6 +101,20 @@ impl<'a> Tracer<'a> {
         })
     }
 
+    /// Every ray of a pixel and all that it meets. Means nothing once the tracer was told to stop.
+    #[must_use]
+    pub fn tree(&self, x: u32, y: u32) -> PixelTree {
+        let counts = &mut RayCounts::default();
+        let mut sum = DVec3::ZERO;
+        let mut samples = Vec::new();
+        for s in 0..self.samples.count() {
+            let (light, record) = self.sample::<TreeRecord>(x, y, s, counts);
+            sum += light;
+            samples.extend(record.ray.map(|ray| *ray));
+        }
+        PixelTree { colour: (sum / f64::from(self.samples.count())).to_array(), samples }
+    }
+
     /// What the ray of a pixel's sample s sees, in f64 whatever the tracer's precision, and whether an engine in f32 has to
     /// see the same.
     #[must_use]
@@ -139,7 +154,8 @@ impl<'a> Tracer<'a> {
             return (DVec3::ZERO, R::default());
         }
         let Some(hit) = self.hierarchy.closest(ray) else {
-            return (self.scene.image.background.as_dvec3(), R::miss());
+            let light = self.scene.image.background.as_dvec3();
+            return (light, R::miss(&Arrival { ray, weight, light }));
         };
         let shading = self.shading(ray, &hit);
         let attenuation = match shading.material.dielectric {
@@ -148,8 +164,9 @@ impl<'a> Tracer<'a> {
             }
             _ => DVec3::ONE,
         };
-        let (mut sum, lights) = self.local_light(&shading, counts);
-        let mut records = [R::default(); 2];
+        let (local_light, lights) = self.local_light::<R>(&shading, counts);
+        let mut sum = local_light;
+        let mut records = <[R; 2]>::default();
         for (child, record) in shading.children().into_iter().zip(&mut records) {
             let Some(child) = child else { continue };
             let child_weight = weight * attenuation * child.share;
@@ -166,7 +183,9 @@ impl<'a> Tracer<'a> {
             sum += child.share * seen;
             *record = seen_record;
         }
-        (attenuation * sum, R::hit(hit.primitive.id, lights, records))
+        let light = attenuation * sum;
+        let ending = shading.ending(hit.t, attenuation, local_light);
+        (light, R::hit(&Arrival { ray, weight, light }, &ending, lights, records))
     }
 
     fn is_worth_tracing(&self, weight: DVec3) -> bool {
@@ -197,15 +216,15 @@ impl<'a> Tracer<'a> {
         let mut sum = shading.material.ambient.as_dvec3() * self.scene.ambient.as_dvec3();
         let mut lights = R::default();
         for light in &self.scene.lights {
-            let shadow = match shading.incoming(light) {
-                None => Shadow::NotTraced,
+            let (shadow, adds) = match shading.incoming(light) {
+                None => (Shadow::NotTraced, DVec3::ZERO),
                 Some(incoming) if self.is_visible(light, shading, counts) => {
-                    sum += shading.reflected(&incoming);
-                    Shadow::Visible
+                    (Shadow::Visible, shading.reflected(&incoming))
                 }
-                Some(_) => Shadow::Hidden,
+                Some(_) => (Shadow::Hidden, DVec3::ZERO),
             };
-            lights = lights.with_light(shadow);
+            sum += adds;
+            lights = lights.with_light(shadow, adds);
         }
         (sum, lights)
     }
@@ -283,6 +302,20 @@ impl Shading<'_> {
             .filter(|direction| direction.dot(self.facing_geometric) > 0.0)
             .unwrap_or_else(|| mirrored(self.direction, self.facing_geometric));
         [Some(Child { direction: direction.normalize(), share: reflected_share, reflected: true }), refracted]
+    }
+
+    /// For a record.
+    fn ending(&self, t: f64, attenuation: DVec3, local_light: DVec3) -> Ending<'_> {
+        Ending {
+            primitive: self.primitive,
+            entering: self.entering,
+            t,
+            point: self.surface.point,
+            facing_geometric: self.facing_geometric,
+            facing_shading: self.facing_shading,
+            attenuation,
+            local_light,
+        }
     }
 
     /// A ray that leaves the surface, on the side the ray came from or on the other.

@@ -2,11 +2,12 @@
 
 use super::MaterialId;
 use glam::{DVec3, Vec3};
+use serde::Serialize;
 use std::ops::Range;
 use thiserror::Error;
 
 /// Place in the scene's flat list; equal hits go to the smaller. `u32::MAX` is never one: it means a miss.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct PrimitiveId(pub u32);
 
 /// All primitives of a scene. Triangles and polygons refer to shared columns of vertices and of normals.

@@ -2,9 +2,10 @@
 
 use super::Rgb;
 use glam::Vec3;
+use serde::Serialize;
 
 /// An index into [`Scene::materials`](super::Scene::materials).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct MaterialId(pub u32);
 
 /// Coefficients of the Whitted model; per channel unless they say otherwise.

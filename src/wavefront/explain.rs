@@ -3,6 +3,7 @@
 use super::level::Level;
 use super::queue::QueuePlan;
 use super::statistics::Stage;
+use super::trail::Keep;
 use super::worker::{DEFAULT_BATCH, Worker};
 use crate::prepare::{Plan, Prepared};
 use serde::Serialize;
@@ -65,8 +66,8 @@ impl Explanation {
     pub fn new(prepared: &Prepared<'_>) -> Self {
         let plan = prepared.plan;
         let stop = AtomicBool::new(false);
-        let worker = Worker::new(prepared, DEFAULT_BATCH, false, &stop);
-        let deeper = (plan.max_depth > 0).then(|| Level::new(&plan, 1, DEFAULT_BATCH, false));
+        let worker = Worker::new(prepared, DEFAULT_BATCH, Keep::Colours, &stop);
+        let deeper = (plan.max_depth > 0).then(|| Level::new(&plan, 1, DEFAULT_BATCH, Keep::Colours));
         let deeper_bytes = deeper.as_ref().map_or(0, Level::bytes);
         let needed =
             |queues: &[QueuePlan]| queues.iter().filter(|queue| queue.rows > 0).cloned().collect::<Vec<_>>();
@@ -76,7 +77,7 @@ impl Explanation {
             batch: DEFAULT_BATCH,
             stages: Stage::ALL.into_iter().filter_map(|stage| stage_plan(&plan, stage)).collect(),
             shared_queues: needed(&worker.shared_queues()),
-            primary_queues: needed(&Level::new(&plan, 0, DEFAULT_BATCH, false).queues()),
+            primary_queues: needed(&Level::new(&plan, 0, DEFAULT_BATCH, Keep::Colours).queues()),
             deeper_queues: deeper.map_or(Vec::new(), |level| needed(&level.queues())),
             most_queue_bytes: worker.bytes() + plan.max_depth as usize * deeper_bytes,
             hierarchy: HierarchyPlan {

@@ -4,6 +4,8 @@ use super::queue::{
     AttenuationQueue, ChildQueue, DepartureQueue, NodeQueue, PendingQueue, QueuePlan, RadianceQueue,
     RayQueue, TrailQueue,
 };
+use super::trail::Keep;
+use super::tree::Trees;
 use crate::prepare::Plan;
 
 /// Rays of one depth, what they see, and the surfaces of the batch of them whose children are being traced.
@@ -26,11 +28,14 @@ pub(super) struct Level {
     pub(super) nodes: NodeQueue,
     /// Row by row of the batch's surfaces; likewise.
     pub(super) trails: TrailQueue,
+    /// Row by row of the rays; none unless asked for.
+    pub(super) trees: Option<Trees>,
 }
 
 impl Level {
     /// Room for the children of a batch, or for a batch of primary rays at depth 0.
-    pub(super) fn new(plan: &Plan, depth: u32, batch: usize, records: bool) -> Self {
+    pub(super) fn new(plan: &Plan, depth: u32, batch: usize, keep: Keep) -> Self {
+        let records = keep != Keep::Colours;
         let rays = if depth == 0 {
             batch
         } else {
@@ -50,6 +55,7 @@ impl Level {
             refracted: ChildQueue::with_capacity(if_needed(plan.refraction && has_children, batch)),
             nodes: NodeQueue::with_capacity(if_needed(records, rays)),
             trails: TrailQueue::with_capacity(if_needed(records && has_surfaces, batch)),
+            trees: (keep == Keep::Trees).then(Vec::new),
         }
     }
 

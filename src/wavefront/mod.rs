@@ -34,12 +34,15 @@ mod statistics;
 mod surface;
 mod tiles;
 mod trail;
+mod tree;
 mod worker;
 
 pub use explain::{Explanation, HierarchyPlan, StagePlan};
 pub use queue::{ColumnPlan, QueuePlan};
 pub use report::{Counters, LanesReport, MemoryReport, StageReport, StageTotal, WavefrontReport};
 pub(crate) use statistics::Statistics;
+pub(crate) use trail::Keep;
 pub use trail::PixelRecord;
+pub(crate) use tree::pixel_tree;
 pub use worker::DEFAULT_BATCH;
 pub(crate) use worker::{TileGrid, TilePixels, Worker};

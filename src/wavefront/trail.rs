@@ -1,11 +1,25 @@
-//! What rays hit and which lights their hits saw, kept where it is asked for: a signature of each pixel's tree of rays.
+//! What rays hit and which lights their hits saw, kept where it is asked for: a signature of each pixel's tree of rays, or
+//! the tree itself.
 
 use super::level::Level;
-use super::queue::{ChildQueue, HitQueue, NodeQueue, ShadowQueue, SurfaceQueue, TrailRecord};
+use super::queue::{ChildQueue, HitQueue, NodeQueue, NormalQueue, ShadowQueue, SurfaceQueue, TrailRecord};
 use super::tiles::Sample;
+use super::tree;
+use crate::prepare::Prepared;
 use crate::scene::PrimitiveId;
 use crate::signature::{self, Shadow};
 use crate::traverse::NOTHING;
+
+/// What a worker keeps of the rays that it traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keep {
+    /// What arrives at the eye, and nothing else.
+    Colours,
+    /// A [`PixelRecord`] of each pixel as well.
+    Signatures,
+    /// Every ray as well: for a pixel or so.
+    Trees,
+}
 
 /// What is known of a pixel beside its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +35,14 @@ impl PixelRecord {
 }
 
 /// Notes what a batch of rays hit, and begins a trail for each surface.
-pub(super) fn begin(level: &mut Level, first_ray: usize, hits: &HitQueue, surfaces: &SurfaceQueue) {
+pub(super) fn begin(
+    prepared: &Prepared<'_>,
+    level: &mut Level,
+    first_ray: usize,
+    hits: &HitQueue,
+    surfaces: &SurfaceQueue,
+    normals: &NormalQueue,
+) {
     for (row, &id) in hits.id[..hits.len()].iter().enumerate() {
         level.nodes.id[first_ray + row] = id;
         level.nodes.node[first_ray + row] = signature::miss();
@@ -30,25 +51,37 @@ pub(super) fn begin(level: &mut Level, first_ray: usize, hits: &HitQueue, surfac
     for row in 0..surfaces.len() {
         level.trails.push(TrailRecord { lights: 0, id: surfaces.departure[row] >> 1 });
     }
+    tree::begin(prepared, level, first_ray, hits, surfaces, normals);
 }
 
-/// Notes which surfaces see a light. Shadow rays come in the order of their surfaces.
-pub(super) fn add_light(level: &mut Level, shadows: &ShadowQueue) {
+/// What became of one light's question to each surface, with the row of the shadow ray where there is one. Shadow rays come
+/// in the order of their surfaces.
+pub(super) fn verdicts(shadows: &ShadowQueue, surfaces: usize) -> impl Iterator<Item = (Shadow, usize)> {
     let mut next = 0;
-    for row in 0..level.trails.len() {
-        let is_traced = next < shadows.len() && shadows.surface[next] as usize == row;
-        let shadow = match is_traced {
-            true if shadows.t[next] >= 0.0 => Shadow::Visible,
-            true => Shadow::Hidden,
-            false => Shadow::NotTraced,
-        };
+    (0..surfaces).map(move |surface| {
+        let row = next;
+        let is_traced = row < shadows.len() && shadows.surface[row] as usize == surface;
         next += usize::from(is_traced);
+        match is_traced {
+            true if shadows.t[row] >= 0.0 => (Shadow::Visible, row),
+            true => (Shadow::Hidden, row),
+            false => (Shadow::NotTraced, row),
+        }
+    })
+}
+
+/// Notes which surfaces see a light.
+pub(super) fn add_light(level: &mut Level, shadows: &ShadowQueue) {
+    for (row, (shadow, _)) in verdicts(shadows, level.trails.len()).enumerate() {
         level.trails.lights[row] = signature::with_light(level.trails.lights[row], shadow);
     }
+    tree::add_light(level, shadows);
 }
 
 /// Folds what the children hit into what their parents hit.
-pub(super) fn resolve(level: &mut Level, deeper: Option<&NodeQueue>) {
+pub(super) fn resolve(level: &mut Level, deeper: Option<&mut Level>) {
+    let (deeper, deeper_trees) = deeper.map(|deeper| (&deeper.nodes, deeper.trees.as_mut())).unzip();
+    tree::resolve(level, deeper_trees.flatten());
     for row in 0..level.trails.len() {
         let node_of = |children: &ChildQueue| match deeper.filter(|_| children.len() > 0) {
             Some(deeper) if children.row[row] != NOTHING => deeper.node[children.row[row] as usize],

@@ -11,10 +11,11 @@ use super::spawn::{Spawning, spawn};
 use super::statistics::{Stage, Statistics};
 use super::surface::{Batch, Sorted, surface};
 use super::tiles::{Sample, Tiles};
-use super::trail::{self, PixelRecord};
+use super::trail::{self, Keep, PixelRecord};
 use crate::film::{Region, SamplePattern};
 use crate::lanes::{Double, Single};
 use crate::prepare::Prepared;
+use crate::ray_tree::RayTree;
 use crate::rays::RecordedRays;
 use crate::traverse::{self, DEAD, Ends, NOTHING, Rays};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -47,6 +48,8 @@ pub(crate) struct Worker<'a> {
     prepared: &'a Prepared<'a>,
     pattern: SamplePattern,
     batch: usize,
+    keep: Keep,
+    /// It keeps more than colours.
     records: bool,
     samples: Vec<Sample>,
     /// By depth; made when a ray first gets so deep.
@@ -105,14 +108,15 @@ impl Scratch {
 
 impl<'a> Worker<'a> {
     /// `batch` is a multiple of [`traverse::RUN`].
-    pub(crate) fn new(prepared: &'a Prepared<'a>, batch: usize, records: bool, stop: &'a AtomicBool) -> Self {
+    pub(crate) fn new(prepared: &'a Prepared<'a>, batch: usize, keep: Keep, stop: &'a AtomicBool) -> Self {
         Self {
             prepared,
             pattern: SamplePattern::new(&prepared.scene.render),
             batch,
-            records,
+            keep,
+            records: keep != Keep::Colours,
             samples: Vec::with_capacity(batch),
-            levels: vec![Level::new(&prepared.plan, 0, batch, records)],
+            levels: vec![Level::new(&prepared.plan, 0, batch, keep)],
             scratch: Scratch::new(prepared, batch),
             recorder: None,
             stop,
@@ -257,7 +261,7 @@ impl<'a> Worker<'a> {
             illuminate::begin(prepared, surfaces, &mut level.pending);
         });
         if self.records {
-            trail::begin(level, first, &scratch.hits, surfaces);
+            trail::begin(prepared, level, first, &scratch.hits, surfaces, normals);
         }
         for light in &prepared.scene.lights {
             if !prepared.plan.local_light {
@@ -310,7 +314,7 @@ impl<'a> Worker<'a> {
         }
         if self.levels.len() == depth + 1 {
             #[expect(clippy::cast_possible_truncation, reason = "a depth is at most 64")]
-            self.levels.push(Level::new(plan, depth as u32 + 1, self.batch, self.records));
+            self.levels.push(Level::new(plan, depth as u32 + 1, self.batch, self.keep));
         }
         let (upper, lower) = self.levels.split_at_mut(depth + 1);
         let (level, deeper) = (&mut upper[depth], &mut lower[0]);
@@ -340,8 +344,13 @@ impl<'a> Worker<'a> {
             resolve(level, deeper.map(|deeper| &deeper.radiance), self.prepared.plan.absorption);
         });
         if self.records {
-            trail::resolve(level, deeper.map(|deeper| &deeper.nodes));
+            trail::resolve(level, lower.first_mut().filter(|_| has_children));
         }
+    }
+
+    /// Trees of the batch's samples, where they are kept.
+    pub(super) fn primary_trees(&mut self) -> Vec<RayTree> {
+        self.levels[0].trees.take().into_iter().flatten().flatten().collect()
     }
 
     /// The queues that all depths share.

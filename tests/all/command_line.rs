@@ -250,6 +250,146 @@ fn wrong_usage_is_2_and_says_what_was_meant() {
     assert_eq!(place.folder.names(), ["scene.toml"], "no picture and nothing else is left");
 }
 
+/// A mirror behind a ball of glass, and two lights.
+const PIXEL_SCENE: &str = r#"
+[image]
+size = [40, 30]
+background = [0.1, 0.2, 0.3]
+[render]
+max_depth = 2
+[camera]
+eye = [0, -5, 1.5]
+target = [0, 0, 0.75]
+up = [0, 0, 1]
+fov = 40
+[ambient]
+intensity = 0.2
+[[light]]
+position = [3, -2, 4]
+[[light]]
+direction = [1, 0.5, -1]
+intensity = 0.3
+[material.mirror]
+ambient = 0.5
+diffuse = 0.1
+mirror = 0.8
+[material.glass]
+specular = 0.5
+shininess = 50
+ior = 1.5
+absorption = [0.1, 0.1, 0.3]
+[[sphere]]
+center = [-0.6, 0, 0.5]
+radius = 0.5
+material = "glass"
+[[polygon]]
+vertices = [[-2, 1, 0], [2, 1, 0], [2, 1, 3], [-2, 1, 3]]
+material = "mirror"
+"#;
+
+#[test]
+fn a_pixel_is_shown_ray_by_ray() {
+    let place = Workplace::new();
+    let path = place.folder.write("pixel.toml", PIXEL_SCENE);
+    let shown = |more: &[&str]| {
+        let output = wavelane(&[&["render", path.to_str().unwrap(), "--pixel", "14,17"], more].concat());
+        assert_exit(&output, 0);
+        assert_eq!(stderr(&output), "");
+        stdout(&output).replace(path.to_str().unwrap(), "pixel.toml")
+    };
+    let text = shown(&["--lanes", "4"]);
+    insta::assert_snapshot!(text);
+    let scalar = shown(&["--engine", "scalar"]);
+    assert_eq!(scalar, text.replace("simd engine (4 lanes)", "scalar engine (1 lane)"));
+    let sampled = shown(&["--samples", "2", "--sampling", "jittered", "--seed", "5", "--max-depth", "0"]);
+    for part in ["samples: 4", "sample 0 of 0 to 3", "sample 3 of 0 to 3", "no further rays: max_depth is 0"]
+    {
+        assert!(sampled.contains(part), "{part} is not in\n{sampled}");
+    }
+    assert!(!sampled.contains("reflected ray") && sampled.ends_with("\n"), "{sampled}");
+    let widest = text.lines().map(|line| line.chars().count()).max();
+    assert!(widest <= Some(100), "{widest:?} columns");
+    assert_eq!(place.folder.names(), ["pixel.toml", "scene.toml"]);
+}
+
+#[test]
+fn the_readme_shows_a_pixel_as_it_is_printed() {
+    let readme = std::fs::read_to_string(crate::support::root().join("README.md")).unwrap();
+    let (_, example) = readme.split_once("```sh\nwavelane render scenes/sphereflake.toml --pixel").unwrap();
+    let (options, rest) = example.split_once("\n```\n\n```text\n").unwrap();
+    let (expected, _) = rest.split_once("```").unwrap();
+    let options: Vec<&str> = options.split_whitespace().collect();
+    let output = wavelane(&[&["render", "scenes/sphereflake.toml", "--pixel"], &options[..]].concat());
+    assert_exit(&output, 0);
+    assert_eq!(stdout(&output), expected);
+}
+
+#[test]
+fn the_trees_of_a_pixel_are_written_as_json() {
+    let place = Workplace::new();
+    let (scene, json) = (place.at("scene.toml"), place.at("tree.json"));
+    let arguments = ["render", &scene, "--pixel", "10,5", "--max-depth", "1", "--json"];
+    let to_stdout = wavelane(&[&arguments[..], &["-"]].concat());
+    assert_exit(&to_stdout, 0);
+    let report: serde_json::Value = serde_json::from_str(&stdout(&to_stdout)).unwrap();
+    let to_file = wavelane(&[&arguments[..], &[&json]].concat());
+    assert_exit(&to_file, 0);
+    assert!(stdout(&to_file).contains("same tree; "), "{}", stdout(&to_file));
+    assert_eq!(std::fs::read_to_string(&json).unwrap(), stdout(&to_stdout));
+    for tree in ["reference_tree", "engine_tree"] {
+        let ray = &report[tree]["samples"][0];
+        assert_eq!((&ray["hit"]["kind"], &ray["hit"]["primitive"]), (&"sphere".into(), &0.into()));
+        assert_eq!(ray["hit"]["lights"][0]["shadow"], "visible");
+        assert_eq!((&ray["reflect"]["hit"], &ray["refract"]), (&serde_json::Value::Null, &().into()));
+        assert_eq!(ray["reflect"]["weight"], serde_json::json!([0.25, 0.25, 0.25]));
+    }
+    assert_eq!((&report["pixel"], &report["parting"]), (&serde_json::json!([10, 5]), &().into()));
+    assert_eq!(report["verdict"].as_str().map(|verdict| verdict.starts_with("same tree; ")), Some(true));
+}
+
+/// Readers of JSON have limits, of 128 levels for instance.
+#[test]
+fn the_deepest_tree_can_be_read() {
+    let place = Workplace::new();
+    let mirrors = "[image]\nsize = [1, 1]\n[render]\nmax_depth = 64\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0.01, 1]\nup = [0, 1, 0]\nfov = 1\n[material.m]\nmirror = 1\n[[polygon]]\nvertices = [[-9, -9, 1], [9, -9, 1], [9, 9, 1], [-9, 9, 1]]\nmaterial = \"m\"\n[[polygon]]\nvertices = [[-9, -9, -1], [9, -9, -1], [9, 9, -1], [-9, 9, -1]]\nmaterial = \"m\"\n";
+    let path = place.folder.write("mirrors.toml", mirrors);
+    let output = wavelane(&["render", path.to_str().unwrap(), "--pixel", "0,0", "--json", "-"]);
+    assert_exit(&output, 0);
+    let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let mut ray = &report["engine_tree"]["samples"][0];
+    for depth in 0..64 {
+        assert_eq!(ray["hit"]["primitive"], depth % 2, "depth {depth}");
+        ray = &ray["reflect"];
+    }
+    assert!(ray["hit"].is_object() && ray["reflect"].is_null(), "{ray}");
+}
+
+#[test]
+fn a_pixel_takes_the_place_of_a_picture() {
+    let place = Workplace::new();
+    let scene = place.at("scene.toml");
+    for (arguments, said) in [
+        (&["--pixel", "20,0"][..], "the last 19,9"),
+        (&["--pixel", "0,10"], "20 x 10 pixels"),
+        (&["--pixel", "5,5", "--size", "5x9"], "the last 4,8"),
+        (&["--pixel", "5"], "400,300"),
+        (&["--pixel", "5,x"], "400,300"),
+        (&["--pixel=-1,0"], "400,300"),
+        (&["--pixel", "5,5", "-o", "a.png"], "cannot be used with"),
+        (&["--pixel", "5,5", "--crop", "0,0,1,1"], "cannot be used with"),
+        (&["--pixel", "5,5", "--bits", "16"], "cannot be used with"),
+        (&["--pixel", "5,5", "--engine", "reference"], "simd or scalar"),
+        (&["--pixel", "5,5", "--json", &scene], "choose another"),
+        (&[], "--output"),
+    ] {
+        let output = wavelane(&[&["render", &scene], arguments].concat());
+        assert_exit(&output, 2);
+        assert!(stderr(&output).contains(said), "{arguments:?} says {}", stderr(&output));
+        assert_eq!(stdout(&output), "");
+    }
+    assert_eq!(place.folder.names(), ["scene.toml"]);
+}
+
 #[test]
 fn the_version_says_what_it_was_built_for() {
     let version = env!("CARGO_PKG_VERSION");

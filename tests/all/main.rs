@@ -15,6 +15,7 @@ mod folder;
 mod formats;
 mod measuring;
 mod model;
+mod pixel_tree;
 mod real_scenes;
 mod recorded;
 mod robustness;
