@@ -15,5 +15,7 @@ mod formats;
 mod model;
 mod real_scenes;
 mod robustness;
+mod saving;
+mod standard_scenes;
 mod support;
 mod wavefront;
