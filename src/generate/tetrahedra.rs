@@ -94,12 +94,12 @@ mod tests {
     #[test]
     fn corners_of_the_parts_are_the_corners_of_the_whole_and_the_middles_of_its_edges() {
         let whole = Tetrahedron { center: Vec3::ZERO, half: 1.0 };
-        for (nth, part) in whole.divided().into_iter().enumerate() {
+        for (nth, part) in (0..).zip(whole.divided()) {
             let corners = CORNERS.map(|corner| part.center + part.half * corner);
             for (other, corner) in corners.into_iter().enumerate() {
-                assert_eq!(corner, (CORNERS[nth] + CORNERS[other]) / 2.0);
+                assert_eq!(corner, (CORNERS[nth as usize] + CORNERS[other]) / 2.0);
             }
-            assert_eq!(part.nearest_corner(), MaterialId(nth as u32));
+            assert_eq!(part.nearest_corner(), MaterialId(nth));
         }
     }
 

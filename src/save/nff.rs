@@ -168,6 +168,15 @@ impl Fill {
         if !material.casts_shadow {
             return Err("a material that casts no shadow".to_owned());
         }
+        match dielectric {
+            Some(Dielectric { fresnel: Fresnel::Schlick, .. }) => {
+                return Err("a dielectric of Schlick's reflectance".to_owned());
+            }
+            Some(Dielectric { absorption, .. }) if absorption != Rgb::ZERO => {
+                return Err("absorption".to_owned());
+            }
+            _ => {}
+        }
         if mirror != specular || specular != Rgb::splat(specular.x) {
             return Err("a mirror whose share is not grey, or not that of its highlight".to_owned());
         }
@@ -181,19 +190,13 @@ impl Fill {
         };
         match dielectric {
             None => Ok(opaque),
-            Some(dielectric) => opaque.with(diffuse, dielectric),
+            Some(Dielectric { ior, transmission, .. }) => opaque.letting_through(ior, transmission),
         }
     }
 
-    /// Diffuse reflection and transmission have to be shares of one colour.
-    fn with(self, diffuse: Rgb, dielectric: Dielectric) -> Result<Self, String> {
-        let Dielectric { ior, absorption, transmission, fresnel } = dielectric;
-        if fresnel == Fresnel::Schlick {
-            return Err("a dielectric of Schlick's reflectance".to_owned());
-        }
-        if absorption != Rgb::ZERO {
-            return Err("absorption".to_owned());
-        }
+    /// Diffuse reflection, which is all of its colour so far, and transmission have to be shares of one colour.
+    fn letting_through(self, ior: f32, transmission: Rgb) -> Result<Self, String> {
+        let diffuse = self.color;
         let ratio = |of: Rgb, to: Rgb| f64::from(of.max_element()) / f64::from(to.max_element());
         let diffuse_in_transmission = Self {
             color: transmission,
