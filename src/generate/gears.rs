@@ -34,10 +34,10 @@ struct Place {
 }
 
 impl Place {
-    /// Three of steel or brass to each of glass, and no two of glass side by side.
+    /// Three of steel or brass to each of glass, the first of glass, and no two of glass side by side.
     fn material(self) -> MaterialId {
         MaterialId(match (self.x + self.y + self.z) % 2 {
-            0 => 2 * ((self.x / 2 + self.y / 2 + self.z) % 2),
+            0 => 2 * ((self.x / 2 + self.y / 2 + self.z + 1) % 2),
             _ => 1,
         })
     }

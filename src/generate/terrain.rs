@@ -172,7 +172,7 @@ mod tests {
             let (columns, rows) = grid(cells);
             assert!(columns <= rows && 2 * columns + 1 >= rows, "{columns} x {rows} for {cells}");
             // The nearest number of rows leaves half a row; large grids have many numbers of columns to choose from.
-            let most = if cells < 400 { columns / 2 } else { cells / 1000 };
+            let most = if cells < 1000 { columns / 2 } else { cells / 500 };
             assert!((columns * rows).abs_diff(cells) <= most, "{columns} x {rows} for {cells}");
         }
     }

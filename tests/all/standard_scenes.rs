@@ -57,8 +57,7 @@ fn each_scene_shows_something_and_has_the_rays_that_it_promises() {
         (StandardScene::Terrain, true, true),
         (StandardScene::Glass, true, true),
     ] {
-        // Large enough for a gear of glass.
-        for size in [200, 1_000] {
+        for size in [100, 1_000] {
             let name = which.name();
             let mut scene = made(which, size);
             (scene.image.width, scene.image.height) = (48, 48);
