@@ -7,6 +7,7 @@
 //! ```
 //!
 //! - [`load`] reads a scene file and ends in a [`scene::Scene`] or in an error that names file, line and column;
+//! - [`mod@generate`] makes the standard scenes of a benchmark instead, and [`mod@save`] writes a scene to a file;
 //! - [`scene`] is plain data in the user's units;
 //! - [`prepare`] makes of it what the engine runs on: geometry in structure of arrays under one tree, and the plan of what the
 //!   scene needs;

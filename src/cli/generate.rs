@@ -34,8 +34,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     save::check_writable(&arguments.output)?;
     let scene = generate(arguments.name, arguments.size as usize)?;
     save::save(&scene, &arguments.output)?;
-    let counted = scene.geometry.primitive_count();
-    let path = arguments.output.display();
-    output::diagnostic(&format!("{path}: {} of {counted} primitives", arguments.name.name()));
-    Ok(())
+    output::result(&format!(
+        "{}: {}, {} primitives",
+        arguments.output.display(),
+        arguments.name.name(),
+        scene.geometry.primitive_count()
+    ))
 }

@@ -34,10 +34,10 @@ struct Place {
 }
 
 impl Place {
-    /// Three of steel or brass to each of glass, and no two of glass side by side.
+    /// Three of steel or brass to each of glass, the first of glass, and no two of glass side by side.
     fn material(self) -> MaterialId {
         MaterialId(match (self.x + self.y + self.z) % 2 {
-            0 => 2 * ((self.x / 2 + self.y / 2 + self.z) % 2),
+            0 => 2 * ((self.x / 2 + self.y / 2 + self.z + 1) % 2),
             _ => 1,
         })
     }
@@ -154,4 +154,82 @@ fn outline(turned: bool) -> Vec<DVec2> {
         })
     };
     (0..TEETH).flat_map(tooth).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn gear() -> Geometry {
+        let mut geometry = Geometry::default();
+        add_gear(&mut geometry, Place { x: 1, y: 0, z: 2 }, 3, MaterialId(0)).unwrap();
+        geometry
+    }
+
+    fn corners(geometry: &Geometry) -> impl Iterator<Item = &[Vec3]> {
+        let range = |range: &std::ops::Range<u32>| range.start as usize..range.end as usize;
+        geometry.polygons.iter().map(move |polygon| &geometry.vertices[range(&polygon.vertices)])
+    }
+
+    /// A dielectric has to be, and has to have its outside outside.
+    #[test]
+    fn a_gear_is_closed_and_its_outside_is_outside() {
+        let gear = gear();
+        assert_eq!(gear.polygons.len(), FACES);
+        let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+        let mut volume = 0.0;
+        for face in corners(&gear) {
+            let key = |corner: usize| face[corner % face.len()].to_array().map(f32::to_bits);
+            for corner in 0..face.len() {
+                let (from, to) = (key(corner), key(corner + 1));
+                *edges.entry([from, to]).or_default() += 1;
+                *edges.entry([to, from]).or_default() -= 1;
+            }
+            // Sixth parts of the volume under each triangle of a fan; a concave face's signs come out right.
+            for pair in face[1..].windows(2) {
+                volume += face[0].as_dvec3().dot(pair[0].as_dvec3().cross(pair[1].as_dvec3())) / 6.0;
+            }
+        }
+        assert!(edges.values().all(|&uses| uses == 0), "every edge is run through once each way");
+        // Between the cylinders through roots and tips, in lattices 2 wide of 3 gears.
+        let cylinder =
+            |radius: f64| std::f64::consts::PI * radius * radius * THICKNESS * (2.0 / 3.0_f64).powi(3);
+        assert!(cylinder(ROOT) < volume && volume < cylinder(TIP), "{volume}");
+    }
+
+    /// By the crossing number, independently of the engine's.
+    fn is_inside(point: DVec2, outline: &[DVec2]) -> bool {
+        let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+        let crossed = edges.filter(|(a, b)| {
+            (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        });
+        crossed.count() % 2 == 1
+    }
+
+    #[test]
+    fn neighbours_mesh_without_touching() {
+        let (one, other) = (outline(false), outline(true));
+        for way in [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y] {
+            let neighbour: Vec<DVec2> = other.iter().map(|&corner| corner + way).collect();
+            assert!(!neighbour.iter().any(|&corner| is_inside(corner, &one)), "{way}");
+            assert!(!one.iter().any(|&corner| is_inside(corner, &neighbour)), "{way}");
+            let reaches_in = neighbour.iter().any(|corner| corner.length() < TIP);
+            assert!(reaches_in, "teeth are between teeth, {way}");
+            // Turned alike they would run into each other, so the test can see it.
+            let alike = one.iter().map(|&corner| corner + way);
+            assert!(alike.clone().any(|corner| is_inside(corner, &one)), "{way}");
+        }
+    }
+
+    #[test]
+    fn glass_gears_are_not_neighbours() {
+        let places = lattice(20_000);
+        for a in places.iter().filter(|place| place.material() == MaterialId(2)) {
+            for b in places.iter().filter(|place| place.material() == MaterialId(2)) {
+                let apart = a.x.abs_diff(b.x) + a.y.abs_diff(b.y) + a.z.abs_diff(b.z);
+                assert!(apart != 1, "{a:?} and {b:?}");
+            }
+        }
+    }
 }

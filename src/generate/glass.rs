@@ -178,3 +178,65 @@ fn add_ground(geometry: &mut Geometry, side: u32) -> Result<(), GeometryProblem>
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{PrimitiveId, Sphere};
+
+    /// Balls, and the bubbles in them: a bubble follows its ball.
+    fn balls_and_bubbles(size: usize) -> (Vec<Sphere>, Vec<[Sphere; 2]>) {
+        let spheres = scene(size).unwrap().geometry.spheres;
+        let bubbles = spheres.windows(2).filter(|pair| pair[1].material == AIR);
+        let bubbles = bubbles.map(|pair| [pair[0], pair[1]]).collect();
+        (spheres.into_iter().filter(|sphere| sphere.material != AIR).collect(), bubbles)
+    }
+
+    #[test]
+    fn balls_rest_on_the_ground_apart_from_each_other() {
+        let (balls, _) = balls_and_bubbles(1000);
+        for (index, ball) in balls.iter().enumerate() {
+            assert_eq!(ball.center.z, ball.radius);
+            for other in &balls[..index] {
+                assert!(
+                    ball.center.distance(other.center) > ball.radius + other.radius,
+                    "{ball:?}, {other:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_bubble_is_inside_a_ball_of_glass() {
+        let (balls, bubbles) = balls_and_bubbles(1000);
+        assert_eq!(bubbles.len(), (bubbles.len() + balls.len()) / 5);
+        for [ball, bubble] in bubbles {
+            assert!(ball.material != MIRROR && ball.center == bubble.center && bubble.radius < ball.radius);
+        }
+    }
+
+    #[test]
+    fn there_are_as_many_parts_as_asked_and_none_twice() {
+        for count in (1..100).chain([1000, 12_345]) {
+            let mut parts: Vec<[u32; 3]> =
+                parts(count).iter().map(|part| [part.level, part.x, part.y]).collect();
+            parts.sort_unstable();
+            parts.dedup();
+            assert_eq!(parts.len(), count);
+        }
+    }
+
+    #[test]
+    fn a_larger_scene_keeps_the_large_balls() {
+        let large = |size: usize| -> Vec<Sphere> {
+            let (balls, _) = balls_and_bubbles(size);
+            balls
+                .into_iter()
+                .filter(|ball| ball.radius > 0.1)
+                .map(|ball| Sphere { id: PrimitiveId(0), ..ball })
+                .collect()
+        };
+        assert!(large(1000).len() > 5);
+        assert_eq!(large(1000), large(20_000));
+    }
+}

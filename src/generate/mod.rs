@@ -1,9 +1,10 @@
 //! The standard scenes of a benchmark, of any size: made from the definitions of their geometry, and the same numbers on
 //! every machine, since nothing but + − × ÷ √ and integers decides them.
 //!
-//! Three are the project's own constructions of well known geometry, after Haines' "A Proposal for Standard Graphics
-//! Environments", 1987, which has no scene of refracting glass in numbers, nor one of all kinds of primitives: the other
-//! two are. A file a scene. Each looks alike at every size; a larger one is finer, or has more in it.
+//! A file a scene. Four have their namesakes in Haines, "A Proposal for Standard Graphics Environments", 1987, and are made
+//! here from the geometry's definition; `glass` is this project's. Each looks alike at every size: a larger one is finer,
+//! or has more in it. Sizes count primitives, and what a primitive is does not change with the size, so that time over size
+//! can be compared.
 
 mod gears;
 mod glass;

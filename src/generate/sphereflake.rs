@@ -109,3 +109,38 @@ fn add_flake(geometry: &mut Geometry, count: usize) -> Result<(), GeometryProble
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Sphere;
+
+    #[test]
+    fn every_sphere_sits_on_one_and_meets_no_other() {
+        let mut geometry = Geometry::default();
+        add_flake(&mut geometry, 1 + 9 + 81 + 300).unwrap();
+        let gap = |a: &Sphere, b: &Sphere| {
+            let between = (a.center.as_dvec3() - b.center.as_dvec3()).length();
+            between - f64::from(a.radius) - f64::from(b.radius)
+        };
+        for (index, sphere) in geometry.spheres.iter().enumerate().skip(1) {
+            let gaps = geometry.spheres[..index].iter().map(|other| gap(sphere, other));
+            let touched = gaps.clone().filter(|gap| gap.abs() < 1e-6).count();
+            assert_eq!(touched, 1, "sphere {index} sits on one");
+            assert!(gaps.clone().all(|gap| gap > -1e-6), "sphere {index} cuts into none");
+            let bottom = f64::from(sphere.center.z) - f64::from(sphere.radius);
+            assert!(bottom > -RADIUS, "sphere {index} is above the ground");
+        }
+    }
+
+    #[test]
+    fn a_generation_that_is_not_full_is_spread_over_all_that_carry() {
+        let mut geometry = Geometry::default();
+        add_flake(&mut geometry, 1 + 9 + 9 * 4).unwrap();
+        for carrier in &geometry.spheres[1..10] {
+            let reach = 1.01 * carrier.radius * 4.0 / 3.0;
+            let carried = geometry.spheres[10..].iter();
+            assert_eq!(carried.filter(|ball| ball.center.distance(carrier.center) < reach).count(), 4);
+        }
+    }
+}

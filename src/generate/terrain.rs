@@ -128,7 +128,7 @@ fn cover([a, b, c]: [DVec3; 3]) -> MaterialId {
     }
 }
 
-/// Height above the lake's surface at a place in [−1, 1]².
+/// World height at a place in [−1, 1]².
 fn height(place: DVec2) -> f64 {
     // Turned by an angle of cosine 0.8 and sine 0.6 from octave to octave, so that their lattices do not fall together.
     let (mut at, mut amplitude, mut sum, mut weight) = (1.4 * place + VIEW, 1.0, 0.0, 1.0);
@@ -160,4 +160,54 @@ fn noise(at: DVec2, octave: u32) -> f64 {
     let share = share * share * share * (share * (6.0 * share - 15.0) + 10.0);
     let along = |up: f64| value(0.0, up) + share.x * (value(1.0, up) - value(0.0, up));
     along(0.0) + share.y * (along(1.0) - along(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_is_nearly_square_and_near_its_size() {
+        for cells in (1..200).chain([497, 4_997, 49_997, 499_997, 4_999_997]) {
+            let (columns, rows) = grid(cells);
+            assert!(columns <= rows && 2 * columns + 1 >= rows, "{columns} x {rows} for {cells}");
+            // The nearest number of rows leaves half a row; large grids have many numbers of columns to choose from.
+            let most = if cells < 1000 { columns / 2 } else { cells / 500 };
+            assert!((columns * rows).abs_diff(cells) <= most, "{columns} x {rows} for {cells}");
+        }
+    }
+
+    #[test]
+    fn noise_joins_its_lattice_without_steps() {
+        for k in 0..400 {
+            let at = DVec2::new(0.017 * f64::from(k) - 3.0, 0.013 * f64::from(k));
+            for way in [DVec2::X, DVec2::Y] {
+                let step = (noise(at + 1e-6 * way, 3) - noise(at, 3)).abs();
+                // The steepest is the quintic's slope of 15/8 over a difference of 1.
+                assert!(step < 2e-6, "{step} at {at}");
+            }
+        }
+        assert_eq!(
+            noise(DVec2::new(-2.0, 5.0), 3),
+            random_unit([3, 0xFFFF_FFFE, 5]),
+            "a point of the lattice"
+        );
+    }
+
+    #[test]
+    fn the_balls_float_over_land_and_water() {
+        let scene = scene(1000).unwrap();
+        for ball in &scene.geometry.spheres {
+            for k in 0..64 {
+                let (sin, cos) = crate::math::sin_cos_degrees(f64::from(k) * 360.0 / 64.0);
+                for share in [0.0, 0.5, 1.0] {
+                    let radius = f64::from(ball.radius);
+                    let off = share * radius * DVec2::new(cos, sin);
+                    let bottom = f64::from(ball.center.z) - radius * (1.0 - share * share).sqrt();
+                    let below = height(ball.center.as_dvec3().truncate() + off).max(WATER_LEVEL);
+                    assert!(bottom > below, "{ball:?}: {bottom} over {below}");
+                }
+            }
+        }
+    }
 }

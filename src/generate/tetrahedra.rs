@@ -86,3 +86,39 @@ fn divided(size: usize) -> Vec<Tetrahedron> {
     };
     solids.into_iter().enumerate().flat_map(divide).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_of_the_parts_are_the_corners_of_the_whole_and_the_middles_of_its_edges() {
+        let whole = Tetrahedron { center: Vec3::ZERO, half: 1.0 };
+        for (nth, part) in (0..).zip(whole.divided()) {
+            let corners = CORNERS.map(|corner| part.center + part.half * corner);
+            for (other, corner) in corners.into_iter().enumerate() {
+                assert_eq!(corner, (CORNERS[nth as usize] + CORNERS[other]) / 2.0);
+            }
+            assert_eq!(part.nearest_corner(), MaterialId(nth));
+        }
+    }
+
+    #[test]
+    fn the_outside_of_every_face_is_outside() {
+        for face in FACES {
+            let [a, b, c] = face.map(|corner| CORNERS[corner]);
+            assert!((b - a).cross(c - a).dot(a) > 0.0, "{face:?}");
+        }
+    }
+
+    #[test]
+    fn a_part_is_divided_once_more_than_another_at_most() {
+        for size in [4, 5, 100, 1000, 4096, 50_000] {
+            let solids = divided(size);
+            assert!((solids.len() * 4).abs_diff(size) <= 6, "{size}");
+            let halves = || solids.iter().map(|solid| solid.half);
+            let (least, most) = (halves().fold(1.0, f32::min), halves().fold(0.0, f32::max));
+            assert!(most <= 2.0 * least, "{size}: {least} to {most}");
+        }
+    }
+}

@@ -43,22 +43,16 @@ impl<'a> Document<'a> {
     }
 
     fn said(scene: &'a Scene) -> Result<Self, String> {
-        let Projection::PerspectiveAngle { vertical_degrees } = scene.camera.projection else {
-            return Err("a camera without an angle of view".to_owned());
-        };
-        let render = RenderSettings { max_depth: scene.render.max_depth, ..RenderSettings::default() };
-        if scene.render != render {
-            return Err("how many samples a pixel has, where they lie, or a least weight of rays".to_owned());
-        }
-        if render.max_depth != MAX_DEPTH {
-            return Err(format!("that rays are followed to depth {}, not {MAX_DEPTH}", render.max_depth));
-        }
+        let fills = scene.materials.iter().map(Fill::of).collect::<Result<_, _>>()?;
+        check_shapes(scene)?;
+        let lights = scene.lights.iter().map(point_light).collect::<Result<_, _>>()?;
         if scene.ambient != Rgb::ZERO {
             return Err("ambient light".to_owned());
         }
-        let lights = scene.lights.iter().map(point_light).collect::<Result<_, _>>()?;
-        let fills = scene.materials.iter().map(Fill::of).collect::<Result<_, _>>()?;
-        check_shapes(scene)?;
+        let Projection::PerspectiveAngle { vertical_degrees } = scene.camera.projection else {
+            return Err("a camera without an angle of view".to_owned());
+        };
+        check_settings(&scene.render)?;
         Ok(Self { scene, vertical_degrees, lights, fills })
     }
 
@@ -132,6 +126,21 @@ fn point_light(light: &Light) -> Result<(Vec3, Rgb), String> {
     }
 }
 
+fn check_settings(settings: &RenderSettings) -> Result<(), String> {
+    let &RenderSettings { max_depth, min_weight, sampling, samples, seed } = settings;
+    let implied = RenderSettings::default();
+    if max_depth != MAX_DEPTH {
+        return Err(format!("that rays are followed to depth {max_depth}, not {MAX_DEPTH}"));
+    }
+    if min_weight != implied.min_weight {
+        return Err("a weight below which no ray is followed".to_owned());
+    }
+    if (sampling, samples, seed) != (implied.sampling, implied.samples, implied.seed) {
+        return Err("how many samples a pixel has and where they lie".to_owned());
+    }
+    Ok(())
+}
+
 fn check_shapes(scene: &Scene) -> Result<(), String> {
     let mut latest = 0;
     for shape in in_order(&scene.geometry) {
@@ -159,6 +168,15 @@ impl Fill {
         if !material.casts_shadow {
             return Err("a material that casts no shadow".to_owned());
         }
+        match dielectric {
+            Some(Dielectric { fresnel: Fresnel::Schlick, .. }) => {
+                return Err("a dielectric of Schlick's reflectance".to_owned());
+            }
+            Some(Dielectric { absorption, .. }) if absorption != Rgb::ZERO => {
+                return Err("absorption".to_owned());
+            }
+            _ => {}
+        }
         if mirror != specular || specular != Rgb::splat(specular.x) {
             return Err("a mirror whose share is not grey, or not that of its highlight".to_owned());
         }
@@ -172,19 +190,13 @@ impl Fill {
         };
         match dielectric {
             None => Ok(opaque),
-            Some(dielectric) => opaque.with(diffuse, dielectric),
+            Some(Dielectric { ior, transmission, .. }) => opaque.letting_through(ior, transmission),
         }
     }
 
-    /// Diffuse reflection and transmission have to be shares of one colour.
-    fn with(self, diffuse: Rgb, dielectric: Dielectric) -> Result<Self, String> {
-        let Dielectric { ior, absorption, transmission, fresnel } = dielectric;
-        if fresnel == Fresnel::Schlick {
-            return Err("a dielectric of Schlick's reflectance".to_owned());
-        }
-        if absorption != Rgb::ZERO {
-            return Err("absorption".to_owned());
-        }
+    /// Diffuse reflection, which is all of its colour so far, and transmission have to be shares of one colour.
+    fn letting_through(self, ior: f32, transmission: Rgb) -> Result<Self, String> {
+        let diffuse = self.color;
         let ratio = |of: Rgb, to: Rgb| f64::from(of.max_element()) / f64::from(to.max_element());
         let diffuse_in_transmission = Self {
             color: transmission,
@@ -213,10 +225,12 @@ impl Fill {
     fn write(&self, writer: &mut impl Write) -> io::Result<()> {
         let Self { color, diffuse_share, specular, shininess, transmission_share, ior } = *self;
         let [specular, shininess, ior] = [specular, shininess, ior].map(Digits);
-        writeln!(
-            writer,
-            "f {} {diffuse_share} {specular} {shininess} {transmission_share} {ior}",
-            words(color)
-        )
+        // A loader rounds the colour's product with a share, not the colour: fewer digits would show where the share is not 1.
+        let color =
+            match [diffuse_share, transmission_share].iter().all(|&share| share == 0.0 || share == 1.0) {
+                true => words(color).to_string(),
+                false => color.as_dvec3().to_array().map(|channel| channel.to_string()).join(" "),
+            };
+        writeln!(writer, "f {color} {diffuse_share} {specular} {shininess} {transmission_share} {ior}")
     }
 }

@@ -65,7 +65,7 @@ mod tests {
         }
     }
 
-    /// Read as an f32, 7.038531e-26 is the f32 below 2⁻⁸³·0.68…, and by way of an f64 its neighbour.
+    /// These digits mean one f32 when they are read as an f32, and its neighbour by way of an f64.
     #[test]
     fn digits_that_an_f64_would_lead_astray_are_not_used() {
         let value: f32 = "7.038531e-26".parse().unwrap();

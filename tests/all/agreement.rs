@@ -3,9 +3,11 @@
 use crate::real_scenes;
 use crate::support::root;
 use std::path::Path;
+use wavelane::generate::{StandardScene, generate};
 use wavelane::lanes::Width;
 use wavelane::load::load;
 use wavelane::measure::Agreement;
+use wavelane::scene::Scene;
 
 /// A row of docs/accuracy.md; shown with `--nocapture`.
 #[expect(clippy::print_stdout, reason = "what a test prints is its own")]
@@ -24,14 +26,17 @@ fn print(name: &str, found: &Agreement) {
     );
 }
 
+fn file_agrees(path: &Path) {
+    let name = path.file_name().unwrap().to_string_lossy();
+    agrees(&name, load(path).unwrap_or_else(|error| panic!("{error}")).scene);
+}
+
 /// Renders small, with the scene's own samples and depth.
-fn agrees(path: &Path) {
-    let name = path.file_name().unwrap().to_string_lossy().into_owned();
-    let mut scene = load(path).unwrap_or_else(|error| panic!("{error}")).scene;
+fn agrees(name: &str, mut scene: Scene) {
     (scene.image.width, scene.image.height) = (200, 200);
     scene.render.samples = scene.render.samples.min(2);
     let found = Agreement::measure(&scene, Width::BEST).unwrap();
-    print(&name, &found);
+    print(name, &found);
     assert_eq!(found.wrong_primaries, 0, "{name}: {found:?}");
 
     // Light is f32 too, where the floor rounds rays and hits alone: half a unit in its last place is no error.
@@ -49,8 +54,15 @@ fn on_the_example_scenes() {
     for entry in std::fs::read_dir(root().join("scenes")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "toml") {
-            agrees(&path);
+            file_agrees(&path);
         }
+    }
+}
+
+#[test]
+fn on_the_standard_scenes() {
+    for which in StandardScene::ALL {
+        agrees(which.name(), generate(which, 1000).unwrap());
     }
 }
 
@@ -58,13 +70,13 @@ fn on_the_example_scenes() {
 fn on_the_spd_scenes() {
     for name in ["balls", "gears", "mount", "shells", "sombrero", "teapot", "tetra"] {
         let Some(path) = real_scenes::file(&format!("spd/{name}.nff")) else { continue };
-        agrees(&path);
+        file_agrees(&path);
     }
 }
 
 #[test]
 fn on_the_bunny() {
     if let Some(path) = real_scenes::file("bunny.obj") {
-        agrees(&path);
+        file_agrees(&path);
     }
 }

@@ -19,6 +19,8 @@ mod pixel_tree;
 mod real_scenes;
 mod recorded;
 mod robustness;
+mod saving;
+mod standard_scenes;
 mod support;
 mod trace;
 mod wavefront;
