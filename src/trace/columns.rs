@@ -6,7 +6,7 @@ use crate::rays::RaySet;
 use crate::traverse::{DEAD, Ends, NOTHING, NOWHERE, RUN, Rays};
 use std::ops::Range;
 
-/// Rays in columns and in the scene's scale, in runs of [`RUN`]. Both scale and the length of a direction are brought to the
+/// Rays in columns and in the scene's scale, in whole runs of them. Both scale and the length of a direction are brought to the
 /// size of 1 by powers of two, so what is found is found for the very rays that were given.
 pub struct RayColumns {
     origin: [Vec<f32>; 3],
