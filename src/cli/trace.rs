@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::check_json(arguments.json.as_deref(), &written)?;
     arguments.engine.warn_of_unused_instructions(arguments.progress);
 
-    let loaded = load::load(&arguments.geometry)?;
+    let loaded = load::load_geometry(&arguments.geometry)?;
     output::warnings(&loaded);
     let rays = load::rays(&arguments.rays)?;
     let unusable_rays = rays.unusable();

@@ -9,7 +9,7 @@
 
 use super::error::{InputError, Place, Warnings};
 use super::framing::framed_scene;
-use super::number;
+use super::number::{self, rounded_3};
 use super::text::read_bytes;
 use crate::npy;
 use crate::scene::{Added, Geometry, Material, MaterialId, Scene};
@@ -22,6 +22,21 @@ const GREY: MaterialId = MaterialId(0);
 pub(super) fn load(folder: &Path, warnings: &mut Warnings) -> Result<Scene, InputError> {
     let geometry = geometry(folder, warnings)?;
     framed_scene(folder, geometry.bounds(), geometry, vec![Material::grey()])
+}
+
+/// The same, seen from its middle where it cannot be framed.
+pub(super) fn load_geometry(folder: &Path, warnings: &mut Warnings) -> Result<Scene, InputError> {
+    let geometry = geometry(folder, warnings)?;
+    let bounds = geometry.bounds();
+    let framed = framed_scene(folder, bounds, Geometry::default(), vec![Material::grey()]);
+    let (low, high) = bounds.unwrap_or_default();
+    let eye = rounded_3((low + high) / 2.0);
+    let middle = || {
+        let mut scene = framed_scene(folder, None, Geometry::default(), vec![Material::grey()])?;
+        (scene.camera.eye, scene.camera.target) = (eye, eye.with_z(eye.z.next_down()));
+        Ok(scene)
+    };
+    Ok(Scene { geometry, ..framed.or_else(|_: InputError| middle())? })
 }
 
 fn geometry(folder: &Path, warnings: &mut Warnings) -> Result<Geometry, InputError> {

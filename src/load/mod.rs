@@ -56,6 +56,19 @@ pub fn load(path: &Path) -> Result<Loaded, InputError> {
     Ok(Loaded { scene, warnings: warnings.into_list() })
 }
 
+/// The same for tracing recorded rays, which takes no camera: what is too small to be framed can be traced.
+///
+/// # Errors
+/// As those of [`load`].
+pub fn load_geometry(path: &Path) -> Result<Loaded, InputError> {
+    if !path.is_dir() {
+        return load(path);
+    }
+    let mut warnings = Warnings::default();
+    let scene = folder::load_geometry(path, &mut warnings)?;
+    Ok(Loaded { scene, warnings: warnings.into_list() })
+}
+
 /// A name's ending in lower case, without the dot.
 fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())

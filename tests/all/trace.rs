@@ -97,6 +97,23 @@ fn every_engine_finds_what_the_rays_hit() {
 }
 
 #[test]
+fn what_cannot_be_framed_can_be_traced() {
+    let folder = Folder::new();
+    let far = folder.file("far");
+    std::fs::create_dir(&far).unwrap();
+    let far_out = 16_777_216.0_f32;
+    std::fs::write(far.join("spheres.npy"), npy_floats(&[[far_out, far_out, far_out, 0.25]])).unwrap();
+    let far = far.into_os_string().into_string().unwrap();
+    assert_eq!(wavelane(&["check", &far]).status.code(), Some(3), "there is no room for an eye beside it");
+    let ray = [far_out, far_out, far_out + 4.0, 0.0, 0.0, 0.0, -1.0, f32::INFINITY];
+    let rays = folder.write("rays.npy", npy_floats(&[ray])).into_os_string().into_string().unwrap();
+    let prefix = folder.file("out").into_os_string().into_string().unwrap();
+    let output = wavelane(&["trace", &far, "--rays", &rays, "--hits", &prefix]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(column(&folder.file("out.t.npy"), "<f4", 1), [3.75_f32.to_le_bytes()]);
+}
+
+#[test]
 fn what_is_no_array_of_rays_is_refused_with_what_would_be_right() {
     let folder = Folder::new();
     let geometry = geometry(&folder);
