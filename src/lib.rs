@@ -15,7 +15,7 @@
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
 //! - [`mod@trace`] gives recorded [`rays`] to any engine on their own, and takes the time;
 //! - [`film`] holds sample positions, pixels and picture files;
-//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results.
+//! - [`mod@render`] puts these together, and [`measure`] compares the results; `report` shows them.
 //!
 //! ```no_run
 //! use std::sync::atomic::AtomicBool;
@@ -50,6 +50,7 @@ mod random;
 pub mod rays;
 pub mod reference;
 pub mod render;
+mod report;
 pub mod save;
 pub mod scene;
 mod signature;

@@ -12,7 +12,6 @@ mod output;
 mod progress;
 mod render;
 mod settings;
-mod table;
 mod trace;
 
 use crate::lanes;
