@@ -6,7 +6,7 @@ use super::plot::dark_style;
 use super::table::Table;
 
 /// What tells a page of ours from another's.
-pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"wavelane compare\">";
+pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"wavelane compare\" />";
 
 /// Words with what has a meaning in markup taken out, for text and for attributes in double quotes.
 pub(super) fn escaped(words: &str) -> String {
@@ -86,7 +86,7 @@ pub(super) fn picture(file: &str, size: [u32; 2], caption: &str) -> String {
     const SHOWN: u32 = 440;
     let class = if width < SHOWN { " class=\"small\"" } else { "" };
     format!(
-        "<figure>\n<a href=\"{file}\"><img{class} src=\"{file}\" width=\"{width}\" height=\"{height}\" alt=\"{caption}\"></a>\n\
+        "<figure>\n<a href=\"{file}\"><img{class} src=\"{file}\" width=\"{width}\" height=\"{height}\" alt=\"{caption}\" /></a>\n\
          <figcaption>{caption}</figcaption>\n</figure>\n"
     )
 }
@@ -99,8 +99,8 @@ pub(super) fn section(heading: &str, content: &str) -> String {
 pub(super) fn document(title: &str, content: &str) -> String {
     let (title, dark) = (escaped(title), dark_style());
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{GENERATOR}\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n{GENERATOR}\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n\
          <title>{title}</title>\n<style>\n{STYLE}@media screen and (prefers-color-scheme: dark) {{\n{DARK}{dark}}}\n</style>\n\
          </head>\n<body>\n<h1>{title}</h1>\n{content}</body>\n</html>\n"
     )

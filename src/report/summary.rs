@@ -75,6 +75,7 @@ fn picture(comparison: &Comparison) -> Option<String> {
 }
 
 fn bits(comparison: &Comparison) -> Option<String> {
+    comparison.engines.first()?;
     let differs =
         |engine: &&EngineResult| engine.engine != "scalar" && engine.same_bits_as_scalar == Some(false);
     let different: Vec<String> = comparison.engines.iter().filter(differs).map(called).collect();
@@ -103,4 +104,95 @@ fn mistakes(comparison: &Comparison) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::{Better, Spread, Wrong};
+    use crate::rays::{RayCounts, RayKind};
+    use std::collections::BTreeMap;
+
+    fn engine(name: &'static str, lanes: u32, seconds: f64, rms: f64) -> EngineResult {
+        let errors =
+            HitErrors { rays: 500, false_hits: Wrong { near_edges: 2, certain: 0 }, ..HitErrors::default() };
+        EngineResult {
+            engine: name,
+            lanes,
+            frame_seconds: Spread::of(vec![seconds], Better::Less),
+            speed_up: None,
+            mrays_per_second: BTreeMap::new(),
+            hits: if name == "reference" {
+                BTreeMap::new()
+            } else {
+                BTreeMap::from([(RayKind::Primary, errors)])
+            },
+            image: Distance { rms, largest: rms, pixels_over: u64::from(rms > 1e-3) },
+            same_bits_as_scalar: (name != "reference").then_some(true),
+        }
+    }
+
+    fn comparison(rms: f64, floor: f64) -> Comparison {
+        Comparison {
+            pixels: 100,
+            frame_rays: RayCounts { primary: 3_000_000, ..RayCounts::default() },
+            recorded_rays: RayCounts { primary: 500, ..RayCounts::default() },
+            threads: 1,
+            build_seconds: None,
+            engines: vec![
+                engine("reference", 1, 6.0, 0.0),
+                engine("scalar", 1, 2.0, rms),
+                engine("simd", 4, 1.0, rms),
+                engine("simd", 8, 0.5, rms),
+            ],
+            floor: Distance { rms: floor, largest: floor, pixels_over: 0 },
+        }
+    }
+
+    #[track_caller]
+    fn assert_says(comparison: &Comparison, words: &[&str]) {
+        let sentences = sentences(comparison);
+        for words in words {
+            assert!(sentences.contains(words), "{words:?} in {sentences:?}");
+        }
+        assert!(!sentences.contains("NaN") && !sentences.contains(" inf"), "{sentences}");
+    }
+
+    /// 3 million rays in half a second are 6 a microsecond; 2 s and 6 s are 4 and 12 times as long; 3e-6 over 2e-6 is 1.5.
+    #[test]
+    fn the_fastest_is_held_against_scalar_reference_and_floor() {
+        assert_says(
+            &comparison(3e-6, 2e-6),
+            &[
+                "Fastest is simd at 8 lanes: 6.00 million rays a second",
+                "4.00 × scalar and 12.0 × the f64 reference",
+                "RMSE of 3.0e-6, 1.50 × the floor",
+                "none of 100 pixels differs",
+                "no error",
+                "Of 500 rays looked at one by one none has",
+                "2 differ within rounding",
+            ],
+        );
+    }
+
+    #[test]
+    fn errors_of_zero_and_without_bound_have_words_too() {
+        assert_says(&comparison(0.0, 0.0), &["the reference's every bit"]);
+        assert_says(&comparison(1e-8, 0.0), &["RMSE of 1.0e-8", "off by 0;"]);
+        assert_says(&comparison(f64::INFINITY, f64::INFINITY), &["RMSE of ∞", "1 of 100 pixels differs"]);
+        assert_says(&comparison(f64::NAN, f64::NAN), &["Fastest"]);
+    }
+
+    #[test]
+    fn what_was_not_measured_is_not_said() {
+        let mut nothing = comparison(1e-6, 1e-6);
+        nothing.engines.iter_mut().for_each(|engine| engine.frame_seconds = None);
+        assert!(!sentences(&nothing).contains("Fastest"));
+        nothing.engines.clear();
+        assert!(!sentences(&nothing).contains("rays"), "{}", sentences(&nothing));
+    }
+
+    #[test]
+    fn mistakes_and_other_bits_are_not_passed_over() {
+        let mut wrong = comparison(1e-6, 1e-6);
+        wrong.engines[2].same_bits_as_scalar = Some(false);
+        wrong.engines[1].hits.values_mut().for_each(|errors| errors.false_misses.certain = 7);
+        assert_says(&wrong, &["The bits of simd at 4 lanes differ", "7 answers are wrong beyond rounding"]);
+        assert!(!sentences(&wrong).contains("no error"));
+    }
 }

@@ -16,6 +16,7 @@ mod formats;
 mod model;
 mod real_scenes;
 mod recorded;
+mod report;
 mod robustness;
 mod support;
 mod wavefront;

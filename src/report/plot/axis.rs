@@ -12,8 +12,8 @@ pub(crate) struct Axis {
 
 #[derive(Clone, Copy, Debug)]
 enum Scale {
-    /// From 0.
-    Linear { end: f64 },
+    /// From 0, so many steps of a round number.
+    Linear { step: f64, steps: f64 },
     /// From one power of ten, or 2 or 5 of them, to another. Where there are zeros they have a place of their own left of it.
     Log { start: Round, end: Round, has_zero: bool },
 }
@@ -30,11 +30,12 @@ impl Axis {
     /// From 0 to a round number past the largest of some; what is infinite or no number does not count.
     pub(crate) fn linear(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         let largest = values.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
-        let end = if largest > 0.0 { Round::from_above(largest).value() } else { 1.0 };
-        // A step of a fifth of the next smaller round number leaves less of the plot empty.
-        let step = Round::from_above(end / 10.0).value();
-        let end = if largest > 0.0 { ((1.04 * largest) / step).ceil() * step } else { end };
-        Self { title: title.into(), scale: Scale::Linear { end } }
+        let largest = if largest > 0.0 { largest.clamp(LEAST, LARGEST) } else { 1.0 };
+        // Marks do not sit on the frame.
+        const MARGIN: f64 = 1.02;
+        let step = Round::from_above(MARGIN * largest / 7.0).value();
+        let steps = (MARGIN * largest / step).ceil();
+        Self { title: title.into(), scale: Scale::Linear { step, steps } }
     }
 
     /// Around all of some numbers, in powers of ten. Zeros stand apart, left of a break; what is infinite does not count.
@@ -49,7 +50,11 @@ impl Axis {
         }
         // Marks do not sit on the frame.
         const MARGIN: f64 = 1.3;
-        let (least, largest) = if largest > 0.0 { (least / MARGIN, largest * MARGIN) } else { (1.0, 10.0) };
+        let (least, largest) = if largest > 0.0 {
+            (least.clamp(LEAST, LARGEST) / MARGIN, largest.clamp(LEAST, LARGEST) * MARGIN)
+        } else {
+            (1.0, 10.0)
+        };
         let (start, end) = (Round::from_below(least), Round::from_above(largest));
         Self { title: title.into(), scale: Scale::Log { start, end, has_zero } }
     }
@@ -57,7 +62,7 @@ impl Axis {
     /// From 0 at one end to 1 at the other; a number beyond an end is at that end.
     pub(super) fn fraction(&self, value: f64) -> f64 {
         let fraction = match self.scale {
-            Scale::Linear { end } => value / end,
+            Scale::Linear { step, steps } => value / step / steps,
             Scale::Log { has_zero: true, .. } if value <= 0.0 => ZERO_AT,
             Scale::Log { start, end, has_zero } => {
                 let first = if has_zero { BREAK_END } else { 0.0 };
@@ -83,12 +88,9 @@ impl Axis {
     fn numbers(&self) -> Vec<f64> {
         const MOST: i32 = 9;
         match self.scale {
-            Scale::Linear { end } => {
-                let step = Round::from_above(end / 7.0).value();
-                (0_u8..20)
-                    .map(|tick| f64::from(tick) * step)
-                    .take_while(|&tick| tick <= 1.001 * end)
-                    .collect()
+            Scale::Linear { step, steps } => {
+                let counts = (0_u8..=u8::MAX).map(f64::from).take_while(|&count| count <= steps);
+                counts.map(|count| count * step).collect()
             }
             Scale::Log { start, end, has_zero } => {
                 let decades = end.exponent - start.exponent;
@@ -107,6 +109,10 @@ impl Axis {
         }
     }
 }
+
+/// Numbers beyond these are at the end of an axis.
+const LEAST: f64 = 1e-290;
+const LARGEST: f64 = 1e290;
 
 /// Where the zeros of a logarithmic axis stand, as a fraction of it.
 const ZERO_AT: f64 = 0.05;
@@ -189,13 +195,13 @@ mod tests {
     #[test]
     fn ticks_are_numbers_that_people_count_in() {
         assert_eq!(texts(&Axis::linear("", [11.7])), ["0", "2", "4", "6", "8", "10", "12"]);
-        assert_eq!(texts(&Axis::linear("", [0.07])), ["0", "0.02", "0.04", "0.06"]);
+        assert_eq!(texts(&Axis::linear("", [0.07])), ["0", "0.02", "0.04", "0.06", "0.08"]);
         assert_eq!(texts(&Axis::log("", [0.4, 20.0])), ["0.2", "0.5", "1", "2", "5", "10", "20", "50"]);
         assert_eq!(texts(&Axis::log("", [2e-6, 0.2])), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"]);
         assert_eq!(texts(&Axis::log("", [3e-7, 9e-7])), ["2·10⁻⁷", "5·10⁻⁷", "10⁻⁶", "2·10⁻⁶"]);
         assert_eq!(
             texts(&Axis::linear("", [3e6])),
-            ["0", "5·10⁵", "10⁶", "1.5·10⁶", "2·10⁶", "2.5·10⁶", "3·10⁶"]
+            ["0", "5·10⁵", "10⁶", "1.5·10⁶", "2·10⁶", "2.5·10⁶", "3·10⁶", "3.5·10⁶"]
         );
     }
 

@@ -119,3 +119,64 @@ impl Chart {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines() -> Chart {
+        // Errors that fall with the square root of the seconds, and faster.
+        let series = [("random", -0.5, 0), ("jittered", -0.75, 1), ("regular", -0.7, 3)];
+        let series: Vec<Series> = series
+            .into_iter()
+            .map(|(name, slope, lanes)| {
+                let point = |step: i32| {
+                    let seconds = 0.01 * f64::from(step * step);
+                    let label = if step == 8 { name.to_owned() } else { String::new() };
+                    Point { x: seconds, y: 0.01 * seconds.powf(slope), y_spread: 0.0, label }
+                };
+                let points = (1..=8).map(point).collect();
+                Series { points, colour: Colour::LANES[lanes], mark: Mark::Full, is_line: true }
+            })
+            .collect();
+        let points = || series.iter().flat_map(|series| &series.points);
+        Chart {
+            x: Axis::log("seconds", points().map(|point| point.x)),
+            y: Axis::log("RMSE", points().map(|point| point.y)),
+            rules: vec![],
+            series,
+        }
+    }
+
+    #[test]
+    fn lines_go_through_all_of_their_points() {
+        let svg = lines().draw().unwrap();
+        let lines: Vec<&str> =
+            svg.split("<polyline").skip(1).filter_map(|rest| rest.split("/>").next()).collect();
+        let curves = lines.iter().filter(|line| line.matches(',').count() == 8);
+        assert_eq!((curves.count(), svg.matches("<circle").count()), (3, 24), "{svg}");
+        for name in ["random", "jittered", "regular"] {
+            assert_eq!(svg.matches(name).count(), 1);
+        }
+    }
+
+    #[test]
+    fn a_chart_without_points_is_still_drawn() {
+        let chart = Chart { x: Axis::log("x", []), y: Axis::linear("y", []), series: vec![], rules: vec![] };
+        assert!(chart.draw().unwrap().ends_with("</svg>\n"));
+    }
+
+    /// Two rules at one place: their words stand in two rows.
+    #[test]
+    fn words_of_rules_do_not_cover_each_other() {
+        let rule = |label: &str| Rule { x: 1.0, label: label.into(), colour: Colour::MUTED };
+        let chart = Chart { rules: vec![rule("one"), rule("two")], series: vec![], ..lines() };
+        let svg = chart.draw().unwrap();
+        let row = |label: &str| {
+            let tag = svg.split("<text").find(|text| text.contains(&format!(">\n{label}\n"))).unwrap();
+            let y = tag.split(" y=\"").nth(1).unwrap().split('"').next().unwrap();
+            y.parse::<i32>().unwrap()
+        };
+        assert!(row("one") - row("two") >= LINE, "{} {}", row("one"), row("two"));
+    }
+}

@@ -23,7 +23,7 @@ pub(super) const LINE: i32 = 15;
 /// Roughly how wide words are in the plots' type: fonts differ, so rather too much.
 pub(super) fn text_width(text: &str) -> i32 {
     let characters = i32::try_from(text.chars().count()).unwrap_or(i32::MAX / 32);
-    characters * 13 / 2 + 2
+    characters * 15 / 2 + 2
 }
 
 impl Area {
