@@ -16,8 +16,8 @@
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
 //! - [`mod@trace`] gives recorded [`rays`] to any engine on their own, and takes the time;
 //! - [`film`] holds sample positions, pixels and picture files;
-//! - [`mod@render`] puts these together, and [`measure`] compares and reports the results; [`ray_tree`] is what both engines
-//!   can say of how a pixel came to its colour.
+//! - [`mod@render`] puts these together, [`measure`] compares the results, and `report` shows them; [`ray_tree`] is what both
+//!   engines can say of how a pixel came to its colour.
 //!
 //! ```no_run
 //! use std::sync::atomic::AtomicBool;
@@ -53,6 +53,7 @@ pub mod ray_tree;
 pub mod rays;
 pub mod reference;
 pub mod render;
+mod report;
 pub mod save;
 pub mod scene;
 mod signature;

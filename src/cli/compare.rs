@@ -2,16 +2,12 @@
 
 use super::progress::{Progress, Style};
 use super::settings::SceneSettings;
-use super::table::{NONE, Table, maybe, number};
 use super::{Failure, interrupt, output};
 use crate::load;
-use crate::measure::{
-    Comparison, ComparisonOptions, Distance, EngineResult, HitErrors, Machine, Percentiles, Wrong,
-};
-use crate::rays::RayKind;
+use crate::measure::{ComparedImages, Comparison, ComparisonOptions};
+use crate::report::{self, Compared, Folder};
 use crate::scene::Scene;
-use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -34,51 +30,35 @@ pub(super) struct Arguments {
     /// Write the result as JSON, to stdout instead of the tables if FILE is -
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-/// The JSON result.
-#[derive(Serialize)]
-struct Report<'a> {
-    scene: String,
-    size: [u32; 2],
-    sampling: &'static str,
-    samples: u32,
-    max_depth: u32,
-    primitives: usize,
-    machine: Machine,
-    #[serde(flatten)]
-    comparison: &'a Comparison,
+    /// Write a page with plots, tables and pictures to a folder, which is made if need be: DIR/index.html
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    output::check_json(arguments.json.as_deref(), &[&arguments.scene])?;
     let mut loaded = load::load(&arguments.scene)?;
     output::warnings(&loaded);
     arguments.settings.apply(&mut loaded.scene);
+    let folder = arguments.report.as_deref().map(Folder::open).transpose()?;
+    check_json(arguments, folder.as_ref())?;
     let scene = &loaded.scene;
-    let comparison = compare(arguments, scene)?;
+    let (comparison, images) = compare(arguments, scene)?;
 
-    let machine = Machine::here_and_now();
-    let mut text = title(arguments, scene, &machine, &comparison);
-    text += &speed(&comparison);
-    text += &errors(&comparison);
+    let name = arguments.scene.display().to_string();
+    let command = command(arguments, scene, comparison.threads);
+    let compared = Compared::new(scene, name, command, comparison);
     if let Some(path) = &arguments.json {
-        let report = Report {
-            scene: arguments.scene.display().to_string(),
-            size: [scene.image.width, scene.image.height],
-            sampling: scene.render.sampling.name(),
-            samples: scene.render.samples,
-            max_depth: scene.render.max_depth,
-            primitives: scene.geometry.primitive_count(),
-            machine,
-            comparison: &comparison,
-        };
-        output::json(&report, path)?;
+        output::json(&compared, path)?;
     }
     if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
-        output::result(&text.trim_end())?;
+        let tables = report::text(&report::tables(&compared.comparison));
+        output::result(&format!("{}\n\n{tables}", compared.title()))?;
     }
-    match comparison.mistakes() {
+    if let Some(folder) = folder {
+        folder.write(&compared, images)?;
+        output::diagnostic(&format!("{}: the report", folder.page().display()));
+    }
+    match compared.comparison.mistakes() {
         0 => Ok(()),
         mistakes => Err(Failure::OverLimit(format!(
             "{mistakes} rays have an answer that is wrong beyond rounding; please report this with the scene"
@@ -86,7 +66,46 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn compare(arguments: &Arguments, scene: &Scene) -> Result<Comparison, Failure> {
+/// The JSON may take the place of neither the scene nor a file of the report.
+fn check_json(arguments: &Arguments, folder: Option<&Folder>) -> Result<(), Failure> {
+    let others: Vec<PathBuf> = folder.iter().flat_map(|folder| folder.files()).collect();
+    let others: Vec<&Path> = others.iter().map(PathBuf::as_path).chain([arguments.scene.as_path()]).collect();
+    output::check_json(arguments.json.as_deref(), &others)
+}
+
+/// A command line that compares the same again, whatever becomes of the scene's own settings and of the defaults.
+fn command(arguments: &Arguments, scene: &Scene, threads: usize) -> String {
+    let (image, render) = (&scene.image, &scene.render);
+    let mut command = format!(
+        "wavelane compare {} --size {}x{} --sampling {} --samples {} --seed {} --max-depth {} --threads {threads} --repeat {} \
+         --rays {}",
+        quoted(&arguments.scene),
+        image.width,
+        image.height,
+        render.sampling.name(),
+        render.samples,
+        render.seed,
+        render.max_depth,
+        arguments.repeat,
+        arguments.rays,
+    );
+    if let Some(path) = &arguments.report {
+        command += &format!(" --report {}", quoted(path));
+    }
+    command
+}
+
+/// A path as a shell takes it.
+fn quoted(path: &Path) -> String {
+    let path = path.display().to_string();
+    let is_plain = |character: char| character.is_alphanumeric() || "/._-+,:@".contains(character);
+    if !path.is_empty() && path.chars().all(is_plain) {
+        return path;
+    }
+    format!("'{}'", path.replace('\'', "'\\''"))
+}
+
+fn compare(arguments: &Arguments, scene: &Scene) -> Result<(Comparison, ComparedImages), Failure> {
     let mut progress: Option<Progress> = None;
     let progress = std::cell::RefCell::new(&mut progress);
     let on_progress = |done: u64, total: u64| {
@@ -107,134 +126,22 @@ fn compare(arguments: &Arguments, scene: &Scene) -> Result<Comparison, Failure> 
         progress.finish();
     }
     interrupt::end_if_asked();
-    let (comparison, _) = compared?;
-    Ok(comparison)
+    Ok(compared?)
 }
 
-fn title(arguments: &Arguments, scene: &Scene, machine: &Machine, comparison: &Comparison) -> String {
-    let primitives = scene.geometry.primitive_count();
-    let samples = u64::from(scene.render.samples).pow(2);
-    format!(
-        "{}: {} x {} pixels, samples a pixel: {samples}, primitives: {primitives}, rays to depth {}\n\
-         {}, threads: {}, built for {}\n",
-        arguments.scene.display(),
-        scene.image.width,
-        scene.image.height,
-        scene.render.max_depth,
-        machine.processor.as_deref().unwrap_or("unknown processor"),
-        comparison.threads,
-        machine.isa,
-    )
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Kinds of ray that there are.
-fn kinds(comparison: &Comparison) -> impl Iterator<Item = RayKind> + '_ {
-    RayKind::ALL.into_iter().filter(|&kind| comparison.recorded_rays.of(kind) > 0)
-}
-
-fn speed(comparison: &Comparison) -> String {
-    let heading = ["engine", "lanes", "frame s", "× scalar"].into_iter();
-    let heading =
-        heading.chain(kinds(comparison).map(RayKind::name)).chain(["RMSE", "largest", "over 1/255"]);
-    let mut table = Table::new(1, heading);
-    let error = |image: &Distance, pixels: f64| {
-        [
-            number(image.rms),
-            number(image.largest),
-            format!("{} %", number(100.0 * image.pixels_over as f64 / pixels)),
-        ]
-    };
-    let pixels = comparison.pixels as f64;
-    for (index, engine) in comparison.engines.iter().enumerate() {
-        let mut row = vec![
-            engine.engine.to_owned(),
-            engine.lanes.to_string(),
-            maybe(engine.frame_seconds.map(|seconds| seconds.median)),
-            maybe(engine.speed_up),
-        ];
-        row.extend(kinds(comparison).map(|kind| {
-            maybe(engine.mrays_per_second.get(&kind).and_then(|rate| rate.map(|rate| rate.median)))
-        }));
-        row.extend(error(&engine.image, pixels));
-        table.push(row);
-        if index == 0 {
-            let mut floor = vec!["f32 floor".to_owned()];
-            floor.extend(std::iter::repeat_n(NONE.to_owned(), 3 + kinds(comparison).count()));
-            floor.extend(error(&comparison.floor, pixels));
-            table.push(floor);
+    #[test]
+    fn a_path_is_one_word_to_a_shell() {
+        for (path, word) in [
+            ("scenes/glass.toml", "scenes/glass.toml"),
+            ("my scene.toml", "'my scene.toml'"),
+            ("it's.toml", "'it'\\''s.toml'"),
+            ("a$b;c", "'a$b;c'"),
+        ] {
+            assert_eq!(quoted(Path::new(path)), word);
         }
     }
-    format!(
-        "\nSpeed, and the picture against the reference's. Rays by kind in Mrays/s, traced on their own; a frame is traced and \
-         shaded, after {} s of building.\n\n{}",
-        maybe(comparison.build_seconds.map(|seconds| seconds.median)),
-        table.lines()
-    )
-}
-
-fn errors(comparison: &Comparison) -> String {
-    let wavefront: Vec<&EngineResult> =
-        comparison.engines.iter().filter(|engine| engine.same_bits_as_scalar.is_some()).collect();
-    let mut text = String::from(
-        "\nAnswers on the same rays, against the reference's. In brackets: within rounding of an edge, where no answer is wrong. t \
-         in\nunits in the last place, and as backward error, the roundings of the primitive's place that explain it; normals in \
-         2^-24.\n",
-    );
-    for engine in &wavefront {
-        let is_scalar = engine.engine == "scalar";
-        if !is_scalar && engine.same_bits_as_scalar == Some(true) {
-            continue;
-        }
-        let same = wavefront.iter().filter(|other| is_scalar && other.same_bits_as_scalar == Some(true));
-        let names = same.map(|other| format!("{} at {}", other.engine, other.lanes)).collect::<Vec<_>>();
-        let names =
-            if is_scalar { names.join(", ") } else { format!("{} at {}", engine.engine, engine.lanes) };
-        let bits =
-            if is_scalar { "; picture and hits have equal bits" } else { ", WHICH DIFFERS FROM SCALAR" };
-        text += &format!("\n{names}{bits}\n\n{}", error_table(comparison, &engine.hits));
-    }
-    text
-}
-
-fn error_table(comparison: &Comparison, hits: &std::collections::BTreeMap<RayKind, HitErrors>) -> String {
-    let mut table = Table::new(
-        1,
-        [
-            "rays",
-            "traced",
-            "hit",
-            "false hits",
-            "false misses",
-            "other primitive",
-            "t ulp p50",
-            "p99",
-            "max",
-            "backward p50",
-            "p99",
-            "max",
-            "normal p50",
-            "p99",
-            "max",
-        ],
-    );
-    for kind in kinds(comparison) {
-        let Some(errors) = hits.get(&kind) else { continue };
-        let wrong = |wrong: Wrong| format!("{} ({})", wrong.certain, wrong.near_edges);
-        let mut row = vec![
-            kind.name().to_owned(),
-            errors.rays.to_string(),
-            errors.hits.to_string(),
-            wrong(errors.false_hits),
-            wrong(errors.false_misses),
-            if kind == RayKind::Shadow { NONE.to_owned() } else { wrong(errors.other_primitives) },
-        ];
-        for percentiles in [errors.t_ulps, errors.t_backward, errors.normal] {
-            row.extend(match percentiles {
-                Some(Percentiles { p50, p99, max }) => [p50, p99, max].map(number),
-                None => [NONE; 3].map(str::to_owned),
-            });
-        }
-        table.push(row);
-    }
-    table.lines()
 }

@@ -3,6 +3,7 @@
 use crate::film::FilmError;
 use crate::load::{Cause, InputError};
 use crate::render::RenderError;
+use crate::report::FolderError;
 use crate::save::SaveError;
 use crate::scene::GeometryProblem;
 use std::io;
@@ -20,6 +21,8 @@ pub(super) enum Failure {
     Render(#[from] RenderError),
     #[error(transparent)]
     Save(#[from] SaveError),
+    #[error(transparent)]
+    Report(#[from] FolderError),
     #[error(transparent)]
     Generate(#[from] GeometryProblem),
     #[error("{}: cannot be written: {why}", path.display())]
@@ -41,6 +44,7 @@ impl Failure {
             },
             Self::Film(FilmError::Write { .. })
             | Self::Save(SaveError::Write { .. })
+            | Self::Report(_)
             | Self::Write { .. } => 1,
             Self::Save(SaveError::UnknownFormat(_) | SaveError::CannotSay { .. }) | Self::Generate(_) => 2,
             Self::Film(FilmError::UnknownFormat(_)) | Self::Usage(_) => 2,

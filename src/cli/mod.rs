@@ -14,7 +14,6 @@ mod pixel;
 mod progress;
 mod render;
 mod settings;
-mod table;
 mod trace;
 
 use crate::lanes;

@@ -28,11 +28,12 @@ pub(super) fn result(line: &impl Display) -> Result<(), Failure> {
     }
 }
 
-/// Says early whether [`json`] could write there, without taking the place of one of the `pictures`.
-pub(super) fn check_json(path: Option<&Path>, pictures: &[&Path]) -> Result<(), Failure> {
+/// Says early whether [`json`] could write there, without taking the place of another file of the command.
+pub(super) fn check_json(path: Option<&Path>, others: &[&Path]) -> Result<(), Failure> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
-    if pictures.contains(&path) {
-        let message = format!("--json {}: a picture has this name; choose another", path.display());
+    if others.contains(&path) {
+        let message =
+            format!("--json {}: another file of this command has this name; choose another", path.display());
         return Err(Failure::Usage(message));
     }
     whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })

@@ -2,7 +2,6 @@
 
 use super::engine::EngineArguments;
 use super::progress::{Progress, Style};
-use super::table::maybe;
 use super::{Failure, output};
 use crate::lanes::{Isa, Width};
 use crate::load;
@@ -11,6 +10,7 @@ use crate::prepare::Prepared;
 use crate::rays::RaySet;
 use crate::reference::Tracer;
 use crate::render::RenderError;
+use crate::report::maybe;
 use crate::scene::Scene;
 use crate::trace::{self, Hits, Query, RayColumns, ReferenceRun, Run};
 use clap::ValueEnum;

@@ -97,6 +97,12 @@ impl HitErrors {
     pub fn mistakes(&self) -> u64 {
         self.false_hits.certain + self.false_misses.certain + self.other_primitives.certain
     }
+
+    /// Rays whose answer is not that of the truth, within what rounding explains.
+    #[must_use]
+    pub fn near_edges(&self) -> u64 {
+        self.false_hits.near_edges + self.false_misses.near_edges + self.other_primitives.near_edges
+    }
 }
 
 impl Display for HitErrors {

@@ -18,6 +18,7 @@ mod model;
 mod pixel_tree;
 mod real_scenes;
 mod recorded;
+mod report;
 mod robustness;
 mod saving;
 mod standard_scenes;

@@ -1,23 +1,24 @@
-//! Tables for a terminal: columns as wide as what is in them, words to the left, numbers to the right.
+//! Tables: for a terminal, with columns as wide as what is in them; for a page, see [`html`](super::html). Words stand to the
+//! left, numbers to the right.
 
 /// Rows of cells; the first row is the heading, and rows may end early.
-pub(super) struct Table {
-    rows: Vec<Vec<String>>,
+pub(crate) struct Table {
+    pub(super) rows: Vec<Vec<String>>,
     /// Columns of words, the first ones.
-    words: usize,
+    pub(super) words: usize,
 }
 
 impl Table {
-    pub(super) fn new<'a>(words: usize, heading: impl IntoIterator<Item = &'a str>) -> Self {
+    pub(crate) fn new<'a>(words: usize, heading: impl IntoIterator<Item = &'a str>) -> Self {
         Self { rows: vec![heading.into_iter().map(str::to_owned).collect()], words }
     }
 
-    pub(super) fn push(&mut self, row: Vec<String>) {
+    pub(crate) fn push(&mut self, row: Vec<String>) {
         self.rows.push(row);
     }
 
     /// A line a row.
-    pub(super) fn lines(&self) -> String {
+    pub(crate) fn lines(&self) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let cells = |column: usize| self.rows.iter().filter_map(move |row| row.get(column));
         let widths: Vec<usize> = (0..columns)
@@ -34,12 +35,16 @@ impl Table {
 }
 
 /// What stands where there is no number.
-pub(super) const NONE: &str = "–";
+pub(crate) const NONE: &str = "–";
 
-/// A number with three significant digits or so; without an exponent where that is readable.
-pub(super) fn number(value: f64) -> String {
+/// A number, where there is one, with three significant digits or so; without an exponent where that is readable.
+pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 {
+    if value.is_nan() {
+        NONE.into()
+    } else if size.is_infinite() {
+        if value > 0.0 { "∞".into() } else { "-∞".into() }
+    } else if size == 0.0 {
         "0".into()
     } else if !(1e-3..1e6).contains(&size) {
         format!("{value:.1e}")
@@ -55,7 +60,7 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// The same, where there may be none.
-pub(super) fn maybe(value: Option<f64>) -> String {
+pub(crate) fn maybe(value: Option<f64>) -> String {
     value.map_or_else(|| NONE.into(), number)
 }
 
@@ -83,6 +88,8 @@ mod tests {
             (123_456.7, "123457"),
             (1.5e7, "1.5e7"),
             (-2.5, "-2.50"),
+            (f64::NAN, NONE),
+            (f64::INFINITY, "∞"),
         ] {
             assert_eq!(number(value), text);
         }
