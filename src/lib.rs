@@ -54,3 +54,6 @@ pub mod trace;
 mod traverse;
 pub mod wavefront;
 mod whole_file;
+
+#[doc(hidden)]
+pub use kernel::bench as kernel_bench;
