@@ -23,7 +23,7 @@ pub(crate) fn benches(criterion: &mut Criterion, file: &SceneFile, pool: &Thread
     let scene = file.load(SIZE);
     let mut group = criterion.benchmark_group(format!("build/{}", file.name));
     let primitives = scene.geometry.primitive_count() as u64;
-    group.sample_size(15).throughput(Throughput::Elements(primitives));
+    group.sample_size(10).throughput(Throughput::Elements(primitives));
 
     let checked = OnceCell::new();
     group.bench_function("wavelane", |bencher| {

@@ -7,7 +7,7 @@ use std::cell::{LazyCell, OnceCell};
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use wavelane::kernel_bench::{Rays, Shapes, meet};
+use wavelane::kernel_bench::{Column, RAYS, Rays, Shapes, meet};
 use wavelane::lanes::Width;
 use wavelane::load::load;
 use wavelane::rays::Stretch;
@@ -16,7 +16,8 @@ use wavelane::scene::{Geometry, MaterialId, Scene};
 
 /// Rays of a packet, 8 × 8, and as many primitives.
 const SIDE: usize = 8;
-const COUNT: usize = SIDE * SIDE;
+const COUNT: usize = RAYS;
+const _: () = assert!(SIDE * SIDE == COUNT);
 
 /// No coordinate of a primitive is larger.
 const EXTENT: f32 = 4.0;
@@ -79,7 +80,7 @@ impl Truth {
         Self { pairs, nearest }
     }
 
-    fn assert_found(&self, pairs: u64, nearest: &[f32; COUNT]) {
+    fn assert_found(&self, pairs: u64, nearest: &Column) {
         assert_eq!(pairs, self.pairs, "pairs that hit");
         for (&found, &truth) in nearest.iter().zip(&self.nearest) {
             let found = f64::from(found);

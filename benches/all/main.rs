@@ -28,6 +28,7 @@ mod traverse;
 mod truth;
 
 use criterion::Criterion;
+use std::time::Duration;
 
 /// How much to do.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -47,7 +48,11 @@ impl Extent {
 }
 
 fn main() {
-    let mut criterion = Criterion::default().without_plots().configure_from_args();
+    let mut criterion = Criterion::default()
+        .without_plots()
+        .warm_up_time(Duration::from_secs(1))
+        .measurement_time(Duration::from_secs(3))
+        .configure_from_args();
     let extent = Extent::of_this_run();
     // One thread for whatever is timed, so that figures are of the work and not of how it is spread.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

@@ -38,7 +38,7 @@ pub(crate) fn benches(criterion: &mut Criterion, file: &SceneFile, extent: Exten
         let columns = LazyCell::new(|| RayColumns::new(&prepared, &rays));
 
         let mut group = criterion.benchmark_group(format!("traverse/{}/{}", file.name, kind.name()));
-        group.sample_size(15).throughput(Throughput::Elements(rays::count(kind, &primary) as u64));
+        group.sample_size(10).throughput(Throughput::Elements(rays::count(kind, &primary) as u64));
         for (engine, width) in [("scalar", Width::One), ("simd", Width::BEST)] {
             let checked = || {
                 let mut run = Run::new(&prepared, &columns, query);

@@ -1,5 +1,4 @@
-//! The kernels on their own, for `benches/`: every ray of some columns against every primitive of a list, lanes across rays as
-//! in a packet.
+//! The kernels on their own, for `benches/`: every ray of a packet against every primitive of a list, lanes across rays.
 //!
 //! Kernels and lanes are private, so a bench, which is another crate, can name neither. What it can name is this module, in
 //! plain numbers and a [`Width`]. The loops stand here, so that kernels are inlined into them by the same crate and the same
@@ -12,18 +11,26 @@ use super::polygon::{self, Outline};
 use super::sphere::{self, Line};
 use super::triangle;
 use crate::lanes::{Job, Mask, Single, Vector, Width};
+use std::hint::black_box;
+
+/// As many rays as the traversal's packets have.
+pub const RAYS: usize = 64;
+
+/// A number for each ray.
+pub type Column = [f32; RAYS];
 
 /// Rays in columns, with what is derived from them: all that a packet keeps for the kernels.
+#[repr(C, align(64))]
 pub struct Rays {
-    origin: [Vec<f32>; 3],
-    direction: [Vec<f32>; 3],
-    near_origin: [Vec<f32>; 3],
-    far_origin: [Vec<f32>; 3],
-    inverse: [Vec<f32>; 3],
-    shear: [Vec<f32>; 2],
-    t_per_z: Vec<f32>,
-    a: Vec<f32>,
-    inverse_a: Vec<f32>,
+    origin: [Column; 3],
+    direction: [Column; 3],
+    near_origin: [Column; 3],
+    far_origin: [Column; 3],
+    inverse: [Column; 3],
+    shear: [Column; 2],
+    t_per_z: Column,
+    a: Column,
+    inverse_a: Column,
 }
 
 /// Primitives of one kind.
@@ -41,28 +48,22 @@ pub enum Shapes {
 
 impl Rays {
     /// Of rays, each an origin and a direction, that all have one order of axes and go one way: x and y of a direction are
-    /// greater than 0, and z is the largest. There are a multiple of sixteen. `extent` is the largest coordinate of what they
-    /// are to meet.
+    /// greater than 0, and z is the largest. `extent` is the largest coordinate of what they are to meet.
     #[must_use]
-    pub fn new(rays: &[[[f32; 3]; 2]], extent: f32) -> Self {
-        let column = |number: &dyn Fn(&[[f32; 3]; 2]) -> f32| rays.iter().map(number).collect::<Vec<f32>>();
-        let padding = |origin: &[f32; 3]| (extent + origin.iter().fold(0.0, |a, b| b.abs().max(a))) * PADDING;
-        let a = |direction: &[f32; 3]| direction.iter().map(|component| component * component).sum::<f32>();
+    pub fn new(rays: &[[[f32; 3]; 2]; RAYS], extent: f32) -> Self {
+        let padding = |origin: [f32; 3]| (extent + origin.iter().fold(0.0, |a, b| b.abs().max(a))) * PADDING;
+        let a = |direction: [f32; 3]| direction.iter().map(|component| component * component).sum::<f32>();
         Self {
-            origin: [0, 1, 2].map(|axis| column(&|[o, _]| o[axis])),
-            direction: [0, 1, 2].map(|axis| column(&|[_, d]| d[axis])),
-            near_origin: [0, 1, 2].map(|axis| column(&|[o, _]| o[axis] + padding(o))),
-            far_origin: [0, 1, 2].map(|axis| column(&|[o, _]| o[axis] - padding(o))),
-            inverse: [0, 1, 2].map(|axis| column(&|[_, d]| 1.0 / d[axis])),
-            shear: [0, 1].map(|axis| column(&|[_, d]| d[axis] * (1.0 / d[2]))),
-            t_per_z: column(&|[_, d]| 1.0 / d[2]),
-            a: column(&|[_, d]| a(d)),
-            inverse_a: column(&|[_, d]| 1.0 / a(d)),
+            origin: [0, 1, 2].map(|axis| rays.map(|[o, _]| o[axis])),
+            direction: [0, 1, 2].map(|axis| rays.map(|[_, d]| d[axis])),
+            near_origin: [0, 1, 2].map(|axis| rays.map(|[o, _]| o[axis] + padding(o))),
+            far_origin: [0, 1, 2].map(|axis| rays.map(|[o, _]| o[axis] - padding(o))),
+            inverse: [0, 1, 2].map(|axis| rays.map(|[_, d]| 1.0 / d[axis])),
+            shear: [0, 1].map(|axis| rays.map(|[_, d]| d[axis] * (1.0 / d[2]))),
+            t_per_z: rays.map(|[_, d]| 1.0 / d[2]),
+            a: rays.map(|[_, d]| a(d)),
+            inverse_a: rays.map(|[_, d]| 1.0 / a(d)),
         }
-    }
-
-    fn count(&self) -> usize {
-        self.a.len()
     }
 
     #[inline(always)]
@@ -97,14 +98,14 @@ impl Rays {
 
 /// Tests every ray against every primitive. Lowers `nearest`, a t for each ray, where one is hit nearer, and returns how many
 /// pairs hit; of boxes, where they are entered.
-pub fn meet(width: Width, rays: &Rays, shapes: &Shapes, nearest: &mut [f32]) -> u64 {
+pub fn meet(width: Width, rays: &Rays, shapes: &Shapes, nearest: &mut Column) -> u64 {
     width.run(Meet { rays, shapes, nearest })
 }
 
 struct Meet<'a> {
     rays: &'a Rays,
     shapes: &'a Shapes,
-    nearest: &'a mut [f32],
+    nearest: &'a mut Column,
 }
 
 impl Job for Meet<'_> {
@@ -126,7 +127,7 @@ fn meet_spheres<F: Single>(rays: &Rays, spheres: &[([f32; 3], f32)], nearest: &m
     let mut pairs = 0;
     for &(center, radius) in spheres {
         let (center, radius) = (Vector::splat(center), F::splat(radius));
-        for row in (0..rays.count()).step_by(F::WIDTH) {
+        for row in groups::<F>() {
             let meeting = sphere::meet(&rays.line::<F>(row), center, radius * radius, zero);
             if meeting.meets.any() {
                 let (t, hit) = meeting.nearest(zero);
@@ -137,12 +138,12 @@ fn meet_spheres<F: Single>(rays: &Rays, spheres: &[([f32; 3], f32)], nearest: &m
     pairs
 }
 
-fn meet_triangles<F: Single>(rays: &Rays, triangles: &[[[f32; 3]; 3]], nearest: &mut [f32]) -> u64 {
+fn meet_triangles<F: Single>(rays: &Rays, triangles: &[[[f32; 3]; 3]], nearest: &mut Column) -> u64 {
     let zero = F::splat(0.0);
     let mut pairs = 0;
     for &[a, b, c] in triangles {
         let vertices = [splat(a), splat(b), splat(c)];
-        for row in (0..rays.count()).step_by(F::WIDTH) {
+        for row in groups::<F>() {
             let space = rays.space::<F>(row);
             let meeting = triangle::meet(&space, vertices, zero);
             if meeting.inside.any() {
@@ -160,7 +161,7 @@ fn meet_polygons<F: Single>(rays: &Rays, polygons: &[(Vec<[f32; 3]>, [f32; 3])],
     for (corners, normal) in polygons {
         let (Some(&first), Some(&last)) = (corners.first(), corners.last()) else { continue };
         let plane = [Vector::splat(first), Vector::splat(*normal)];
-        for row in (0..rays.count()).step_by(F::WIDTH) {
+        for row in groups::<F>() {
             let space = rays.space::<F>(row);
             let mut outline = Outline::<F>::new();
             let mut from = space.see(splat(last));
@@ -181,17 +182,23 @@ fn meet_polygons<F: Single>(rays: &Rays, polygons: &[(Vec<[f32; 3]>, [f32; 3])],
     pairs
 }
 
-fn meet_boxes<F: Single>(rays: &Rays, boxes: &[[[f32; 3]; 2]], nearest: &mut [f32]) -> u64 {
+fn meet_boxes<F: Single>(rays: &Rays, boxes: &[[[f32; 3]; 2]], nearest: &mut Column) -> u64 {
     let (zero, infinity) = (F::splat(0.0), F::splat(f32::INFINITY));
     let mut pairs = 0;
     for &[low, high] in boxes {
         let (near, far) = (Vector::splat(low), Vector::splat(high));
-        for row in (0..rays.count()).step_by(F::WIDTH) {
+        for row in groups::<F>() {
             let (enters, meets) = bounds::enter(&rays.slabs::<F>(row), near, far, zero, infinity);
             pairs += keep(enters, meets, &mut nearest[row..]);
         }
     }
     pairs
+}
+
+/// The first ray of each group of lanes. The compiler is not told that they follow each other, or it would work on several
+/// groups of one lane at once, which it cannot in a packet: there a group is tested only if its rays meet a box.
+fn groups<F: Single>() -> impl Iterator<Item = usize> {
+    (0..RAYS).step_by(F::WIDTH).map(black_box)
 }
 
 /// Keeps what is nearer, and counts hits.
@@ -203,7 +210,7 @@ fn keep<F: Single>(t: F, hit: F::Mask, nearest: &mut [f32]) -> u64 {
 }
 
 #[inline(always)]
-fn vector<F: Single>([x, y, z]: &[Vec<f32>; 3], row: usize) -> Vector<F> {
+fn vector<F: Single>([x, y, z]: &[Column; 3], row: usize) -> Vector<F> {
     Vector::new(F::load(&x[row..]), F::load(&y[row..]), F::load(&z[row..]))
 }
 
