@@ -61,3 +61,6 @@ pub mod trace;
 mod traverse;
 pub mod wavefront;
 mod whole_file;
+
+#[doc(hidden)]
+pub use kernel::bench as kernel_bench;

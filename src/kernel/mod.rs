@@ -5,6 +5,7 @@
 //!
 //! What a hit looks like — its exact place, its normal — is not computed here but once a ray, in `wavefront::surface`.
 
+pub mod bench;
 pub(crate) mod bounds;
 pub(crate) mod polygon;
 mod ray_space;
