@@ -6,7 +6,7 @@ use super::plot::dark_style;
 use super::table::Table;
 
 /// What tells a page of ours from another's.
-pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"wavelane compare\" />";
+pub(super) const GENERATOR: &str = "name=\"generator\" content=\"wavelane compare\"";
 
 /// Words with what has a meaning in markup taken out, for text and for attributes in double quotes.
 pub(super) fn escaped(words: &str) -> String {
@@ -99,7 +99,7 @@ pub(super) fn section(heading: &str, content: &str) -> String {
 pub(super) fn document(title: &str, content: &str) -> String {
     let (title, dark) = (escaped(title), dark_style());
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n{GENERATOR}\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n<meta {GENERATOR} />\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n\
          <title>{title}</title>\n<style>\n{STYLE}@media screen and (prefers-color-scheme: dark) {{\n{DARK}{dark}}}\n</style>\n\
          </head>\n<body>\n<h1>{title}</h1>\n{content}</body>\n</html>\n"

@@ -48,6 +48,10 @@ pub(crate) fn number(value: f64) -> String {
         "0".into()
     } else if !(1e-3..1e6).contains(&size) {
         format!("{value:.1e}")
+    } else if size < 1e-2 {
+        format!("{value:.5}")
+    } else if size < 0.1 {
+        format!("{value:.4}")
     } else if size < 1.0 {
         format!("{value:.3}")
     } else if size < 10.0 {
@@ -81,7 +85,8 @@ mod tests {
         for (value, text) in [
             (0.0, "0"),
             (1e-7, "1.0e-7"),
-            (0.00123, "0.001"),
+            (0.001234, "0.00123"),
+            (0.01236, "0.0124"),
             (0.1234, "0.123"),
             (1.236, "1.24"),
             (12.36, "12.4"),
