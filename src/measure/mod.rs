@@ -4,6 +4,7 @@ mod agreement;
 mod difference;
 mod hit_errors;
 mod report;
+pub mod rungs;
 
 pub use agreement::{Agreement, Distance};
 pub use difference::{Difference, heat_map};

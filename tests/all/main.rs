@@ -16,5 +16,6 @@ mod model;
 mod real_scenes;
 mod recorded;
 mod robustness;
+mod rungs;
 mod support;
 mod wavefront;
