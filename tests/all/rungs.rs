@@ -69,6 +69,17 @@ fn a_far_sphere_is_mistaken_by_the_quadratic_formula_and_not_by_the_engine_s() {
 }
 
 #[test]
+fn near_a_huge_ground_the_compensated_formula_alone_sees_it() {
+    // The eye's height is less than the rounding of the radius.
+    let ground = one_sphere([0.3, 0.01, -5.0], [0.3, 0.005, 0.0], 60.0, [0.0, -1e6, 0.0], 1e6);
+    let rung = rungs_of(&ground, RayKind::Primary).sphere.unwrap();
+    assert_engines_formula_is_right(&rung);
+    let wrong = |name: &str| formula(&rung, name).errors.near_edges();
+    assert!(wrong("naive") > rung.pairs / 10 && wrong("stable") > rung.pairs / 10, "{rung}");
+    assert_eq!(wrong("compensated") + formula(&rung, "compensated").errors.mistakes(), 0, "{rung}");
+}
+
+#[test]
 fn still_life_has_both_rungs_and_the_engine_s_formulas_make_no_mistakes() {
     let scene = scene(STILL_LIFE);
     for kind in RayKind::ALL {
@@ -150,7 +161,7 @@ fn without_weak_rays_there_are_fewer_rays_and_more_error() {
     let stop = AtomicBool::new(false);
     let rung = MinWeightRung::measure(&scene, &options(&stop)).unwrap().unwrap();
     let all = rung.frames.first().unwrap();
-    assert_eq!((all.min_weight, rung.pixels), (0.0, 64 * 48));
+    assert_eq!((all.min_weight, rung.size), (0.0, [64, 48]));
     // Without a limit what is left is the engine's own error.
     assert!(all.rms < 1e-4, "{rung}");
     for pair in rung.frames.windows(2) {

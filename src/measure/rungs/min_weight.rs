@@ -1,12 +1,12 @@
 //! The rung of `min_weight`: what it buys not to trace rays that carry little light, and what that costs.
 
 use super::table::{Table, or_none, short};
-use super::{RungOptions, median};
-use crate::film::{Image, Region};
+use super::{RungOptions, median, rendered, shrunk};
+use crate::film::Image;
 use crate::measure::{Agreement, Difference};
 use crate::prepare::Plan;
 use crate::rays::RayCounts;
-use crate::render::{Engine, RenderError, RenderOptions, Rendered, render};
+use crate::render::{Engine, RenderError, Rendered};
 use crate::scene::Scene;
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
@@ -14,8 +14,8 @@ use std::fmt::{self, Display, Formatter};
 /// Frames of one scene, each without the rays whose weight is below a limit.
 #[derive(Clone, Debug, Serialize)]
 pub struct MinWeightRung {
-    /// Pixels of the frame.
-    pub pixels: u64,
+    /// Columns and rows: the scene's picture, made smaller if it has very many pixels.
+    pub size: [u32; 2],
     /// Limit by limit, from none.
     pub frames: Vec<MinWeightFrame>,
 }
@@ -38,8 +38,12 @@ pub struct MinWeightFrame {
 /// Limits that are tried: none, and powers of two around those that scenes ask for.
 const LIMITS: [f32; 6] = [0.0, 1.0 / 4096.0, 1.0 / 1024.0, 1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0];
 
+/// Pixels of the frame, at most. With its samples, one a pixel, this bounds what the reference takes for trees of rays that
+/// only their depth ends.
+const PIXELS: u32 = 1 << 18;
+
 impl MinWeightRung {
-    /// Renders a scene at each limit by the wavefront engine, in turn, and once by the reference; none for a scene in which
+    /// Renders a scene at each limit by the wavefront engine, in turn, and once by the reference, with one sample a pixel; none for a scene in which
     /// nothing is reflected or refracted.
     ///
     /// # Errors
@@ -51,8 +55,8 @@ impl MinWeightRung {
         }
         let steps = 1 + options.rounds();
         options.step("all rays by the reference", 0, steps)?;
-        let mut scene = scene.clone();
-        scene.render.min_weight = 0.0;
+        let mut scene = shrunk(scene, PIXELS);
+        (scene.render.samples, scene.render.min_weight) = (1, 0.0);
         let truth = rendered(&scene, Engine::Reference, options)?.image;
         let mut frames: Vec<MinWeightFrame> = Vec::new();
         for round in 0..options.rounds() {
@@ -66,7 +70,7 @@ impl MinWeightRung {
                 frames[place].seconds.push(frame.trace_seconds);
             }
         }
-        Ok(Some(Self { pixels: truth.pixels.len() as u64, frames }))
+        Ok(Some(Self { size: [scene.image.width, scene.image.height], frames }))
     }
 }
 
@@ -84,19 +88,10 @@ impl MinWeightFrame {
     }
 }
 
-/// A whole frame.
-pub(super) fn rendered(
-    scene: &Scene,
-    engine: Engine,
-    options: &RungOptions<'_>,
-) -> Result<Rendered, RenderError> {
-    let region = Region::whole(scene.image.width, scene.image.height);
-    let (threads, stop) = (options.threads, options.stop);
-    render(scene, &RenderOptions { engine, region, threads, on_progress: &|_| {}, stop })
-}
-
 impl Display for MinWeightRung {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        writeln!(f, "without weak rays, {width} x {height} pixels, one sample each")?;
         let mut table = Table::new(&[
             "min_weight",
             "seconds",
@@ -120,7 +115,7 @@ impl Display for MinWeightRung {
                 short(frame.rays.total() as f64 / 1e6),
                 short(frame.rms),
                 frame.pixels_over.to_string(),
-                short(100.0 * frame.pixels_over as f64 / self.pixels as f64),
+                short(100.0 * frame.pixels_over as f64 / (f64::from(width) * f64::from(height))),
             ]);
         }
         write!(f, "{table}")

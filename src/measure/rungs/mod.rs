@@ -12,8 +12,10 @@ pub mod min_weight;
 pub mod samples;
 mod table;
 
+use crate::film::Region;
 use crate::lanes::Width;
-use crate::render::RenderError;
+use crate::render::{Engine, RenderError, RenderOptions, Rendered, render};
+use crate::scene::Scene;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How to measure.
@@ -56,6 +58,27 @@ impl RungOptions<'_> {
     }
 }
 
+/// A whole frame.
+fn rendered(scene: &Scene, engine: Engine, options: &RungOptions<'_>) -> Result<Rendered, RenderError> {
+    let region = Region::whole(scene.image.width, scene.image.height);
+    let (threads, stop) = (options.threads, options.stop);
+    render(scene, &RenderOptions { engine, region, threads, on_progress: &|_| {}, stop })
+}
+
+/// The same view on so many pixels at most, of the same shape as far as whole pixels go.
+fn shrunk(scene: &Scene, most_pixels: u32) -> Scene {
+    let mut scene = scene.clone();
+    let [width, height] = [scene.image.width, scene.image.height].map(f64::from);
+    let factor = (f64::from(most_pixels) / (width * height)).sqrt();
+    if factor < 1.0 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "less than it was")]
+        let side = |length: f64, most: u32| ((length * factor) as u32).clamp(1, most);
+        let width = side(width, most_pixels);
+        (scene.image.width, scene.image.height) = (width, side(height, most_pixels / width));
+    }
+    scene
+}
+
 /// The middle number, of an even count the upper of the two; none of nothing.
 fn median(numbers: &[f64]) -> Option<f64> {
     let mut sorted = numbers.to_vec();
@@ -66,11 +89,46 @@ fn median(numbers: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Camera, Geometry, ImageSettings, Projection, RenderSettings, Rgb};
+    use glam::Vec3;
 
     #[test]
     fn the_median_is_the_middle_of_the_sorted_numbers() {
         assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median(&[5.0]), Some(5.0));
         assert_eq!(median(&[]), None);
+    }
+
+    #[test]
+    fn a_large_picture_shrinks_to_so_many_pixels_and_keeps_its_shape_and_a_small_one_stays() {
+        let sizes = [
+            ([800, 600], [104, 78]),
+            ([512, 512], [90, 90]),
+            ([64, 48], [64, 48]),
+            ([100_000, 1], [8192, 1]),
+        ];
+        for ([width, height], expected) in sizes.into_iter().chain([([1, 100_000], [1, 8192])]) {
+            let mut scene = empty_scene();
+            (scene.image.width, scene.image.height) = (width, height);
+            let image = shrunk(&scene, 1 << 13).image;
+            assert_eq!([image.width, image.height], expected, "of {width} x {height}");
+        }
+    }
+
+    fn empty_scene() -> Scene {
+        Scene {
+            image: ImageSettings::default(),
+            render: RenderSettings::default(),
+            camera: Camera {
+                eye: Vec3::ZERO,
+                target: Vec3::NEG_Z,
+                up: Vec3::Y,
+                projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
+            },
+            ambient: Rgb::ZERO,
+            lights: Vec::new(),
+            materials: Vec::new(),
+            geometry: Geometry::default(),
+        }
     }
 }

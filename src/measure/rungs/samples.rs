@@ -1,8 +1,7 @@
 //! The rung of samples: how far a picture of few samples a pixel is from one of very many, and at what cost.
 
-use super::min_weight::rendered;
 use super::table::{Table, or_none, short};
-use super::{RungOptions, median};
+use super::{RungOptions, median, rendered, shrunk};
 use crate::film::Image;
 use crate::measure::Difference;
 use crate::render::{Engine, RenderError};
@@ -47,7 +46,7 @@ pub struct SampledPicture {
     pub rms: f64,
 }
 
-/// Pixels of the small picture, at most.
+/// Pixels of the small picture, at most: 4096 samples each take two cores some ten seconds.
 const PIXELS: u32 = 1 << 13;
 
 /// n of the pictures.
@@ -65,7 +64,7 @@ impl SamplesRung {
     pub fn measure(scene: &Scene, options: &RungOptions<'_>) -> Result<Self, RenderError> {
         let steps = 2 + options.rounds();
         let engine = Engine::wavefront(options.width);
-        let mut scene = small(scene);
+        let mut scene = shrunk(scene, PIXELS);
         options.step("the truth, of many samples", 0, steps)?;
         let seed = scene.render.seed;
         let truth = {
@@ -116,18 +115,6 @@ impl SamplesRung {
         let least = pictures.map(|picture| picture.rms).min_by(f64::total_cmp)?;
         (self.numerical_rms > 0.0).then(|| least / self.numerical_rms)
     }
-}
-
-/// The same view on [`PIXELS`] or fewer, of the same shape as far as whole pixels go.
-fn small(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    let [width, height] = [scene.image.width, scene.image.height].map(f64::from);
-    let factor = (f64::from(PIXELS) / (width * height)).sqrt().min(1.0);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "no more than it was")]
-    let side = |length: f64, most: u32| ((length * factor).round() as u32).clamp(1, most);
-    let width = side(width, PIXELS);
-    (scene.image.width, scene.image.height) = (width, side(height, PIXELS / width));
-    scene
 }
 
 fn rms(truth: &Image, image: &Image) -> f64 {
