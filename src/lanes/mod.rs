@@ -55,20 +55,24 @@ pub(crate) trait Lanes:
     /// Lanes 0 to `count` − 1; all of them where `count` is at least the width.
     fn first(count: usize) -> Self::Mask;
 
+    #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
 
+    #[inline(always)]
     fn ge(self, other: Self) -> Self::Mask {
         other.le(self)
     }
 
     /// `if self < other { self } else { other }`: `other` where one is not a number.
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
 
     /// `if self > other { self } else { other }`: `other` where one is not a number.
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.gt(other), self, other)
     }
@@ -79,6 +83,7 @@ pub(crate) trait Mask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
 {
     /// True where one is and the other is not.
+    #[inline(always)]
     fn xor(self, other: Self) -> Self {
         self ^ other
     }

@@ -219,7 +219,7 @@ impl Tally {
 }
 
 impl Wrong {
-    fn count(&mut self, is_certain: bool) {
+    pub(super) fn count(&mut self, is_certain: bool) {
         if is_certain {
             self.certain += 1;
         } else {
@@ -229,7 +229,7 @@ impl Wrong {
 }
 
 /// The distance from a number > 0, as f32, to the next larger.
-fn ulp(number: f64) -> f64 {
+pub(super) fn ulp(number: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
     let rounded = number as f32;
     f64::from(rounded.next_up()) - f64::from(rounded)

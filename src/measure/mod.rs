@@ -9,6 +9,7 @@ mod hit_errors;
 mod machine;
 mod race;
 mod report;
+pub mod rungs;
 mod spread;
 mod tree_comparison;
 

@@ -108,7 +108,7 @@ impl Sightings {
 
 /// Up to two stretches of the ray where an engine may meet a primitive, on its near and its far side, and whether every
 /// engine does.
-type Stretches = ([Option<[f64; 2]>; 2], bool);
+pub(super) type Stretches = ([Option<[f64; 2]>; 2], bool);
 
 fn stretches(primitive: &Primitive, ray: &Ray) -> Stretches {
     let departure = ray.departure.filter(|departure| departure.from == primitive.id);
@@ -125,7 +125,7 @@ fn stretches(primitive: &Primitive, ray: &Ray) -> Stretches {
     }
 }
 
-fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Stretches {
+pub(super) fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Stretches {
     let to_center = center - ray.origin;
     let band = band(ray.origin, to_center.length() + radius);
     let middle = to_center.dot(ray.direction);
@@ -142,7 +142,7 @@ fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Stretches {
 }
 
 /// A triangle or a polygon. Of one that is not quite plane, the outline as seen from the ray counts, as everywhere.
-fn outline(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Stretches {
+pub(super) fn outline(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Stretches {
     let (x, y) = ray.direction.any_orthonormal_pair();
     let farthest = vertices.iter().map(|&vertex| vertex.distance(ray.origin)).fold(0.0, f64::max);
     let band = band(ray.origin, farthest);

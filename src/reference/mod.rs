@@ -13,6 +13,7 @@
 //! - `hierarchy`: the same answers without trying every primitive
 //! - `certainty`: whether an engine in f32 could honestly see another primitive
 //! - `optics`: mirror and refraction directions, and the shares of light that take them
+//! - `pair`: questions about one ray and one primitive
 //! - `precision`: what rays and hits are kept in, f64 or f32
 //! - `query`: questions about single rays
 //! - `record`: what is kept of a tree of rays besides its light
@@ -22,6 +23,7 @@ mod camera;
 mod certainty;
 mod hierarchy;
 mod optics;
+mod pair;
 mod precision;
 mod query;
 mod ray;
@@ -30,6 +32,7 @@ mod shape;
 mod tracer;
 
 pub use certainty::PrimaryHit;
+pub(crate) use pair::PairTruth;
 pub use precision::Precision;
 pub use query::Met;
 pub use tracer::Tracer;

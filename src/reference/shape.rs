@@ -199,7 +199,7 @@ impl Shape {
 /// |o + t·d − c|² = r². The discriminant is taken as r² − l² with l the distance of the centre from the line, since
 /// b² − 4ac loses the radius of a sphere far away. Source: Hearn and Baker, "Computer Graphics with OpenGL", as used in
 /// Haines, Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
-fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Option<[f64; 2]> {
+pub(super) fn sphere(ray: &Ray, center: DVec3, radius: f64) -> Option<[f64; 2]> {
     let from_center = ray.origin - center;
     let a = ray.direction.length_squared();
     let closest_t = -from_center.dot(ray.direction) / a;
@@ -225,15 +225,15 @@ fn far_side(ray: &Ray, center: DVec3) -> f64 {
     -2.0 * (ray.origin - center).dot(ray.direction) / ray.direction.length_squared()
 }
 
-struct TriangleHit {
-    t: f64,
+pub(super) struct TriangleHit {
+    pub(super) t: f64,
     /// Weights of the three vertices; they sum to 1.
     barycentric: [f64; 3],
 }
 
 /// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign; the areas are
 /// the barycentric weights, and t is the mean of the vertices' t by these weights. Edges and corners belong to it.
-fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
+pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
     let [a, b, c] = vertices.map(|vertex| ray.project(vertex));
     let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
     if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {

@@ -117,12 +117,12 @@ impl RayColumns {
     }
 
     /// As many rows as it takes to fill the last run.
-    pub(super) fn filled(&self) -> usize {
+    pub(crate) fn filled(&self) -> usize {
         self.t_max.len()
     }
 
     /// Rays of a run of rows that begins and ends with whole runs of [`RUN`].
-    pub(super) fn rays(&self, rows: &Range<usize>) -> Rays<'_> {
+    pub(crate) fn rays(&self, rows: &Range<usize>) -> Rays<'_> {
         Rays {
             origin: [0, 1, 2].map(|axis| &self.origin[axis][rows.clone()]),
             origin_low: [0, 1, 2].map(|axis| self.origin_low[axis].get(rows.clone()).unwrap_or(&[])),

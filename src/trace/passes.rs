@@ -40,6 +40,12 @@ impl<'a> Run<'a> {
         start.elapsed().as_secs_f64()
     }
 
+    /// Where rays ended in the last pass, in the scene's scale: the t of their hit, or of their end where they hit nothing;
+    /// below 0 for what is no ray.
+    pub(crate) fn ends(&self) -> &[f32] {
+        &self.ends.t
+    }
+
     /// What the last pass found.
     #[must_use]
     pub fn hits(&self) -> Hits {

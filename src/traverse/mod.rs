@@ -18,6 +18,7 @@ mod single;
 mod tests;
 
 pub(crate) use counts::{Counts, LaneUse};
+pub(crate) use single::{Ray as SingleRay, leaves};
 
 use crate::lanes::Single;
 use crate::prepare::Hierarchy;

@@ -12,7 +12,7 @@ use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// What the tests need of a ray.
-pub(super) struct Ray {
+pub(crate) struct Ray {
     origin: [f32; 3],
     origin_low: [f32; 3],
     direction: [f32; 3],
@@ -35,7 +35,7 @@ pub(super) struct Ray {
 
 impl Ray {
     #[inline(always)]
-    pub(super) fn new(hierarchy: &Hierarchy, rays: &Rays<'_>, row: usize) -> Self {
+    pub(crate) fn new(hierarchy: &Hierarchy, rays: &Rays<'_>, row: usize) -> Self {
         let origin = rays.origin.map(|column| column[row]);
         let direction = rays.direction.map(|column| column[row]);
         let sizes = direction.map(f32::abs);
@@ -84,7 +84,7 @@ impl Ray {
         }
     }
 
-    fn space<L: Lanes<Scalar = f32>>(&self) -> RaySpace<L> {
+    pub(crate) fn space<L: Lanes<Scalar = f32>>(&self) -> RaySpace<L> {
         RaySpace {
             origin: self.axes.map(|axis| L::splat(self.origin[axis])),
             shear: self.shear.map(L::splat),
@@ -92,13 +92,18 @@ impl Ray {
         }
     }
 
-    fn line<L: Lanes<Scalar = f32>>(&self) -> Line<L> {
+    pub(crate) fn line<L: Lanes<Scalar = f32>>(&self) -> Line<L> {
         Line {
             origin: Vector::splat(self.origin),
             direction: Vector::splat(self.direction),
             a: L::splat(self.a),
             inverse_a: L::splat(1.0 / self.a),
         }
+    }
+
+    /// Order of axes in ray space.
+    pub(crate) fn axes(&self) -> [usize; 3] {
+        self.axes
     }
 
     fn exact(&self) -> exact::Line {
@@ -210,6 +215,28 @@ pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
         }
     }
     (target.nearest.t, target.nearest.spot.id(hierarchy))
+}
+
+/// Visits the leaves that a ray enters before `end`, the nearer first.
+pub(crate) fn leaves(hierarchy: &Hierarchy, ray: &Ray, end: f32, mut visit: impl FnMut(Place)) {
+    if hierarchy.nodes.is_empty() {
+        return;
+    }
+    let (slabs, mut counts) = (ray.slabs(), Counts::default());
+    let mut stack = EMPTY_STACK;
+    stack[0] = (Child::inner(0), 0.0);
+    let mut waiting = 1;
+    while waiting > 0 {
+        waiting -= 1;
+        match Hierarchy::place(stack[waiting].0) {
+            Some(Place::Node(index)) => {
+                let node = &hierarchy.nodes[index];
+                waiting = push_children::<f32>(node, ray, &slabs, end, &mut stack, waiting, &mut counts);
+            }
+            Some(leaf) => visit(leaf),
+            None => {}
+        }
+    }
 }
 
 /// Puts the children that the ray meets on the stack, the nearest on top.

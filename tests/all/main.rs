@@ -20,6 +20,7 @@ mod real_scenes;
 mod recorded;
 mod report;
 mod robustness;
+mod rungs;
 mod saving;
 mod standard_scenes;
 mod support;

@@ -6,6 +6,7 @@ mod polygon;
 mod same_bits;
 pub(crate) mod sight;
 mod sphere;
+mod textbook;
 mod triangle;
 
 use glam::DVec3;
