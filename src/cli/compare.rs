@@ -3,11 +3,17 @@
 use super::progress::{Progress, Style};
 use super::settings::SceneSettings;
 use super::{Failure, interrupt, output};
+use crate::lanes::Width;
 use crate::load;
+use crate::measure::rungs::{self, RungOptions, Rungs};
 use crate::measure::{ComparedImages, Comparison, ComparisonOptions};
+use crate::rays::RayCounts;
+use crate::render::RenderError;
 use crate::report::{self, Compared, Folder};
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -24,6 +30,9 @@ pub(super) struct Arguments {
     /// About so many rays of each kind are traced on their own, and looked at one by one
     #[arg(long, value_name = "R", default_value = "262144", value_parser = clap::value_parser!(u64).range(1..))]
     rays: u64,
+    /// Measure what accuracy costs, too: other formulas, no weak rays, more samples; takes some times as long
+    #[arg(long)]
+    rungs: bool,
     /// How far it is, on stderr
     #[arg(long, value_enum, default_value = "auto")]
     progress: Style,
@@ -44,14 +53,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = &loaded.scene;
     let (comparison, images) = compare(arguments, scene)?;
 
+    let rungs =
+        arguments.rungs.then(|| measure_rungs(arguments, scene, comparison.frame_rays)).transpose()?;
+
     let name = arguments.scene.display().to_string();
     let command = command(arguments, scene, comparison.threads);
-    let compared = Compared::new(scene, name, command, comparison);
+    let compared = Compared::new(scene, name, command, comparison, rungs);
     if let Some(path) = &arguments.json {
         output::json(&compared, path)?;
     }
     if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
-        let tables = report::text(&report::tables(&compared.comparison));
+        let mut tables = report::tables(&compared.comparison);
+        tables.extend(compared.rungs.iter().flat_map(report::rungs));
+        let tables = report::text(&tables);
         output::result(&format!("{}\n\n{tables}", compared.title()))?;
     }
     if let Some(folder) = folder {
@@ -89,6 +103,9 @@ fn command(arguments: &Arguments, scene: &Scene, threads: usize) -> String {
         arguments.repeat,
         arguments.rays,
     );
+    if arguments.rungs {
+        command += " --rungs";
+    }
     if let Some(path) = &arguments.report {
         command += &format!(" --report {}", quoted(path));
     }
@@ -106,27 +123,52 @@ fn quoted(path: &Path) -> String {
 }
 
 fn compare(arguments: &Arguments, scene: &Scene) -> Result<(Comparison, ComparedImages), Failure> {
-    let mut progress: Option<Progress> = None;
-    let progress = std::cell::RefCell::new(&mut progress);
-    let on_progress = |done: u64, total: u64| {
-        let mut progress = progress.borrow_mut();
-        progress.get_or_insert_with(|| Progress::new(arguments.progress, total, "steps")).report(done);
-    };
-    let compared = interrupt::watched(|stop| {
+    measured(arguments, "steps", |on_progress, stop| {
         let options = ComparisonOptions {
-            threads: arguments.threads.map_or(0, usize::from),
+            threads: threads(arguments),
             repeat: arguments.repeat as usize,
             rays: arguments.rays,
-            on_progress: &on_progress,
+            on_progress,
             stop,
         };
         Comparison::measure(scene, &options)
-    });
-    if let Some(progress) = progress.borrow().as_ref() {
+    })
+}
+
+fn measure_rungs(arguments: &Arguments, scene: &Scene, frame: RayCounts) -> Result<Rungs, Failure> {
+    measured(arguments, "steps of rungs", |on_progress, stop| {
+        let options = RungOptions {
+            width: Width::BEST,
+            threads: threads(arguments),
+            repeats: arguments.repeat as usize,
+            on_progress: &|rungs::Progress { done, steps, .. }| on_progress(done as u64, steps as u64),
+            stop,
+        };
+        Rungs::measure(scene, frame, arguments.rays, &options)
+    })
+}
+
+fn threads(arguments: &Arguments) -> usize {
+    arguments.threads.map_or(0, usize::from)
+}
+
+/// Measures with progress, until it is done or Ctrl-C comes. The measurement gets what to call with the steps done and those
+/// there will be, and what makes it stop.
+fn measured<T>(
+    arguments: &Arguments,
+    unit: &'static str,
+    measure: impl FnOnce(&(dyn Fn(u64, u64) + Sync), &AtomicBool) -> Result<T, RenderError>,
+) -> Result<T, Failure> {
+    let progress: OnceLock<Progress> = OnceLock::new();
+    let on_progress = |done: u64, total: u64| {
+        progress.get_or_init(|| Progress::new(arguments.progress, total, unit)).report(done);
+    };
+    let found = interrupt::watched(|stop| measure(&on_progress, stop));
+    if let Some(progress) = progress.get() {
         progress.finish();
     }
     interrupt::end_if_asked();
-    Ok(compared?)
+    Ok(found?)
 }
 
 #[cfg(test)]

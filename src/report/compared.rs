@@ -1,5 +1,6 @@
 //! A comparison with what it was made of, how and where; this is its JSON.
 
+use crate::measure::rungs::Rungs;
 use crate::measure::{Comparison, Machine};
 use crate::scene::Scene;
 use serde::Serialize;
@@ -28,11 +29,20 @@ pub(crate) struct Compared {
     pub(crate) machine: Machine,
     #[serde(flatten)]
     pub(crate) comparison: Comparison,
+    /// What accuracy costs, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rungs: Option<Rungs>,
 }
 
 impl Compared {
     /// What has just been measured of a scene, here and now.
-    pub(crate) fn new(scene: &Scene, name: String, command: String, comparison: Comparison) -> Self {
+    pub(crate) fn new(
+        scene: &Scene,
+        name: String,
+        command: String,
+        comparison: Comparison,
+        rungs: Option<Rungs>,
+    ) -> Self {
         Self {
             scene: name,
             command,
@@ -45,6 +55,7 @@ impl Compared {
             primitives: scene.geometry.primitive_count(),
             machine: Machine::here_and_now(),
             comparison,
+            rungs,
         }
     }
 

@@ -4,6 +4,7 @@ use super::Compared;
 use super::figures::{HIT_ERRORS, SPEED_BY_KIND, SPEED_OVER_ERROR};
 use super::html::GENERATOR;
 use super::page::{ENGINE, ENGINE_ERROR, FLOOR_ERROR, Page, TRUTH};
+use super::rung_figures::{SAMPLES, SPHERE_FORMULAS, TRIANGLE_FORMULAS, WEAK_RAYS};
 use crate::film::{self, BitDepth, FilmError};
 use crate::measure::ComparedImages;
 use crate::whole_file;
@@ -15,8 +16,21 @@ use thiserror::Error;
 const PAGE: &str = "index.html";
 const DATA: &str = "comparison.json";
 /// All that is ever written.
-const FILES: [&str; 9] =
-    [PAGE, DATA, SPEED_OVER_ERROR, SPEED_BY_KIND, HIT_ERRORS, TRUTH, ENGINE, ENGINE_ERROR, FLOOR_ERROR];
+const FILES: [&str; 13] = [
+    PAGE,
+    DATA,
+    SPEED_OVER_ERROR,
+    SPEED_BY_KIND,
+    HIT_ERRORS,
+    SPHERE_FORMULAS,
+    TRIANGLE_FORMULAS,
+    WEAK_RAYS,
+    SAMPLES,
+    TRUTH,
+    ENGINE,
+    ENGINE_ERROR,
+    FLOOR_ERROR,
+];
 
 /// A folder that a page can be written to.
 pub(crate) struct Folder {

@@ -3,6 +3,8 @@
 
 use super::figures::{self, Figure};
 use super::plot::PlotError;
+use super::rung_figures::rung_figures;
+use super::rungs::rungs;
 use super::summary::sentences;
 use super::table::number;
 use super::tables::tables;
@@ -40,6 +42,7 @@ impl Page {
         let headline = figures::speed_over_error(comparison)?;
         let kinds = figures::speed_by_kind(comparison)?;
         let errors = figures::hit_errors(comparison)?;
+        let choices = compared.rungs.as_ref().map(rung_figures).transpose()?.unwrap_or_default();
         let pictures = pictures(images);
 
         let mut content = html::paragraph(&settings(compared));
@@ -49,10 +52,14 @@ impl Page {
             content += &html::section("By kind of ray", &plots(kinds.iter().chain(&errors)));
         }
         content += &html::section("In numbers", &html::blocks(&tables(comparison)));
+        if let Some(found) = &compared.rungs {
+            let shown = plots(&choices) + &html::blocks(&rungs(found));
+            content += &html::section("What accuracy costs", &shown);
+        }
         content += &html::section("Where the pictures differ", &shown(&pictures));
         content += &html::section("Made by", &origin(compared, data));
         let html = html::document(&format!("Speed and error: {}", compared.scene), &content);
-        let figures = [Some(headline), kinds, errors].into_iter().flatten().collect();
+        let figures = [Some(headline), kinds, errors].into_iter().flatten().chain(choices).collect();
         Ok(Self { html, figures, pictures })
     }
 

@@ -79,6 +79,92 @@ fn a_comparison_of_nothing_has_no_strange_numbers() {
     table(&wavelane(&["bench", &path, "--repeat", "1"]));
 }
 
+/// A picture so small that the truth of very many samples takes a moment.
+const TINY: [&str; 8] = ["--size", "16x12", "--repeat", "1", "--threads", "2", "--max-depth", "4"];
+
+#[test]
+fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
+    let folder = Folder::new();
+    // A second triangle on an edge of the first, so that rays can be aimed at what they share.
+    let second =
+        "[[triangle]]\nvertices = [[-0.5, 0.25, 0], [0.2, 0.9, 0.1], [-1, 0.5, 1]]\nmaterial = \"matte\"\n";
+    let path = scene(&folder, "scene.toml", &format!("{STILL_LIFE}{second}"));
+    assert!(report(&[&["compare", &path], &TINY[..]].concat()).get("rungs").is_none());
+
+    let arguments = [&["compare", &path, "--rungs"], &TINY[..]].concat();
+    let found = report(&arguments);
+    let rungs = &found["rungs"];
+    let kinds: Vec<_> = rungs["kernels"].as_array().unwrap().iter().map(|of| &of["rays"]).collect();
+    assert_eq!(kinds, ["primary", "shadow", "reflect", "refract"]);
+    for kernels in rungs["kernels"].as_array().unwrap() {
+        for (primitive, formulas) in [("sphere", 3), ("triangle", 2)] {
+            let formulas_found = kernels[primitive]["formulas"].as_array().unwrap();
+            assert_eq!(formulas_found.len(), formulas, "{kernels}");
+            for formula in formulas_found {
+                assert!(formula["seconds"]["median"].as_f64().unwrap() > 0.0, "{formula}");
+                assert_eq!(formula["seconds"]["runs"], 1);
+            }
+        }
+    }
+    assert!(rungs["leaks"]["edge_rays"].as_u64().unwrap() > 0, "{}", rungs["leaks"]);
+    let frames = rungs["min_weight"]["frames"].as_array().unwrap();
+    assert_eq!(
+        frames[0]["rays"], found["frame_rays"],
+        "all rays of the frame at its own size and one sample"
+    );
+    assert_eq!(rungs["samples"]["size"], serde_json::json!([16, 12]));
+    assert!(rungs["samples"]["patterns"][1]["slope"].as_f64().unwrap() < 0.0);
+    assert!(found["command"].as_str().unwrap().contains(" --rungs"));
+
+    let text = table(&wavelane(&arguments));
+    let after = text.split("normal p50").nth(1).unwrap();
+    for word in [
+        "spheres, refract rays",
+        "triangles, primary rays",
+        "watertight, the engine's",
+        "Leaks: of",
+        "min_weight",
+    ] {
+        assert!(after.contains(word), "{word} in\n{text}");
+    }
+    for pattern in ["1/4096 ", "regular", "random", "jittered", "8 x 8", "slope"] {
+        assert!(after.contains(pattern), "{pattern} in\n{text}");
+    }
+}
+
+#[test]
+fn what_a_scene_has_not_has_no_rung() {
+    let folder = Folder::new();
+    let path = scene(&folder, "empty.toml", EMPTY);
+    let arguments = ["compare", &path, "--rungs", "--size", "8x8", "--repeat", "1"];
+    let found = report(&arguments);
+    let rungs = &found["rungs"];
+    assert_eq!(rungs["kernels"], serde_json::json!([]));
+    assert!(rungs["leaks"].is_null() && rungs["min_weight"].is_null(), "{rungs}");
+    for pattern in rungs["samples"]["patterns"].as_array().unwrap() {
+        assert!(pattern["slope"].is_null() && pattern["pictures"][7]["rms"] == 0.0, "{pattern}");
+    }
+    let text = table(&wavelane(&arguments));
+    assert!(!text.contains("formula") && !text.contains("Leaks"), "{text}");
+    assert!(text.contains("The engine's own error, at one sample a pixel, is 0."), "{text}");
+}
+
+#[test]
+fn the_rungs_say_how_far_they_are() {
+    let folder = Folder::new();
+    let path = scene(&folder, "scene.toml", STILL_LIFE);
+    let output = wavelane(&[&["compare", &path, "--rungs", "--progress", "json"], &TINY[..]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let lines: Vec<Value> = stderr(&output).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let of_rungs: Vec<&Value> = lines.iter().filter(|line| line.get("steps of rungs").is_some()).collect();
+    let percents: Vec<u64> = of_rungs.iter().map(|line| line["percent"].as_u64().unwrap()).collect();
+    assert!(percents.is_sorted() && percents.len() > 5 && percents.last() == Some(&100), "{percents:?}");
+    let last = of_rungs.last().unwrap();
+    assert_eq!(last["steps of rungs"], last["total"]);
+    // Of each kind of rays three steps; leaks, weak rays, samples.
+    assert_eq!(last["total"], 4 * 3 + 2 + 2 + 3);
+}
+
 #[test]
 fn bench_measures_phases_stages_rays_memory_and_growth() {
     let arguments =

@@ -119,6 +119,33 @@ fn the_page_is_whole_and_needs_no_network() {
     }
 }
 
+#[test]
+fn what_accuracy_costs_is_a_section_with_a_plot_for_each_rung_that_there_is() {
+    let triangle = |z: f32| {
+        format!("[[triangle]]\nvertices = [[-2, 1, 0], [0, 1, 0], [-1, 1, {z}]]\nmaterial = \"m\"\n")
+    };
+    let with_mesh = format!("{SCENE}{}{}", triangle(2.0), triangle(-1.0));
+    let matte = SCENE.replace("mirror = 0.25\n", "");
+    let nothing = "[image]\nsize = [8, 8]\n".to_owned();
+    let all = ["samples.svg", "sphere-formulas.svg", "triangle-formulas.svg", "weak-rays.svg"];
+    for (text, expected) in [(with_mesh, &all[..]), (matte, &all[..2]), (nothing, &[])] {
+        let folder = Folder::new();
+        let (scene, report) = (folder.write("scene.toml", text), folder.file("report"));
+        assert_exit(&compare(&scene, &report, &["--rungs", "--size", "12x8"]), 0);
+        let page = assert_sound(&report);
+        assert!(page.contains("<h2>What accuracy costs</h2>"), "{page}");
+        let found: Vec<String> =
+            names(&report).into_iter().filter(|name| all.contains(&name.as_str())).collect();
+        assert_eq!(found, expected);
+        let shown = |name: &&&str| page.contains(&format!("href=\"{name}\""));
+        assert_eq!(all.iter().filter(shown).count(), expected.len());
+        // A page without rungs takes the place of one with.
+        assert_exit(&compare(&scene, &report, &["--size", "12x8"]), 0);
+        assert!(!names(&report).iter().any(|name| all.contains(&name.as_str())));
+        assert!(!assert_sound(&report).contains("What accuracy costs"));
+    }
+}
+
 /// The command that the page names is one that the program takes, and it says the same of the scene.
 #[test]
 fn the_command_on_the_page_compares_the_same_again() {

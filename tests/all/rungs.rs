@@ -54,7 +54,11 @@ fn assert_engines_formula_is_right(rung: &KernelRung) {
     assert_eq!(errors.mistakes(), 0, "{errors:?}");
     // Twice the bounds that the kernels state, which leave the rounding of what a ray stores of itself out.
     assert!(errors.t_backward.is_none_or(|roundings| roundings.max <= 12.0), "{errors:?}");
-    assert!(rung.formulas.iter().all(|run| run.seconds.len() == 1 && run.seconds[0] > 0.0));
+    assert!(
+        rung.formulas
+            .iter()
+            .all(|run| run.seconds.is_some_and(|seconds| seconds.runs == 1 && seconds.best > 0.0))
+    );
 }
 
 #[test]
@@ -75,8 +79,8 @@ fn near_a_huge_ground_the_compensated_formula_alone_sees_it() {
     let rung = rungs_of(&ground, RayKind::Primary).sphere.unwrap();
     assert_engines_formula_is_right(&rung);
     let wrong = |name: &str| formula(&rung, name).errors.near_edges();
-    assert!(wrong("naive") > rung.pairs / 10 && wrong("stable") > rung.pairs / 10, "{rung}");
-    assert_eq!(wrong("compensated") + formula(&rung, "compensated").errors.mistakes(), 0, "{rung}");
+    assert!(wrong("naive") > rung.pairs / 10 && wrong("stable") > rung.pairs / 10, "{rung:?}");
+    assert_eq!(wrong("compensated") + formula(&rung, "compensated").errors.mistakes(), 0, "{rung:?}");
 }
 
 #[test]
@@ -89,7 +93,6 @@ fn still_life_has_both_rungs_and_the_engine_s_formulas_make_no_mistakes() {
             assert_engines_formula_is_right(rung);
             assert_eq!(rung.pairs, rung.tested, "so few are all played back");
         }
-        assert!(!rungs.to_string().contains("NaN"), "{rungs}");
     }
 }
 
@@ -100,13 +103,12 @@ fn many_pairs_are_sampled_and_what_is_found_is_the_same_from_run_to_run() {
     (shells.image.width, shells.image.height) = (200, 200);
     let without_times = || {
         let mut rung = rungs_of(&shells, RayKind::Primary).sphere.unwrap();
-        rung.formulas.iter_mut().for_each(|run| run.seconds.clear());
+        rung.formulas.iter_mut().for_each(|run| run.seconds = None);
         rung
     };
     let rung = without_times();
-    assert!(rung.tested > 1 << 20 && rung.pairs <= 1 << 20 && rung.pairs > 1 << 19, "{rung}");
+    assert!(rung.tested > 1 << 20 && rung.pairs <= 1 << 20 && rung.pairs > 1 << 19, "{rung:?}");
     assert_eq!(format!("{rung:?}"), format!("{:?}", without_times()));
-    assert!(!rung.to_string().contains("NaN"), "without rounds: {rung}");
 }
 
 #[test]
@@ -126,7 +128,6 @@ fn nothing_to_test_is_no_rung() {
     let none = rungs_of(&empty, RayKind::Primary);
     assert!(none.sphere.is_none() && none.triangle.is_none());
     assert!(leaks_of(&empty).is_none());
-    assert_eq!(none.to_string(), "");
 }
 
 #[test]
@@ -148,10 +149,10 @@ fn a_closed_mesh_leaks_by_moller_and_trumbore_s_test_and_not_by_the_engine_s() {
         ball(Vec3::new(0.3, 0.1, 0.2), 2.0, false)
     ));
     let rung = leaks_of(&ball).unwrap();
-    assert!(rung.edge_rays > 1000 && rung.corner_rays > 20, "{rung}");
+    assert!(rung.edge_rays > 1000 && rung.corner_rays > 20, "{rung:?}");
     for leaks in &rung.formulas {
-        assert_eq!(leaks.is_engines, leaks.at_edges == 0, "{rung}");
-        assert!(!leaks.is_engines || leaks.at_corners == 0, "{rung}");
+        assert_eq!(leaks.is_engines, leaks.at_edges == 0, "{rung:?}");
+        assert!(!leaks.is_engines || leaks.at_corners == 0, "{rung:?}");
     }
 }
 
@@ -163,14 +164,13 @@ fn without_weak_rays_there_are_fewer_rays_and_more_error() {
     let all = rung.frames.first().unwrap();
     assert_eq!((all.min_weight, rung.size), (0.0, [64, 48]));
     // Without a limit what is left is the engine's own error.
-    assert!(all.rms < 1e-4, "{rung}");
+    assert!(all.rms < 1e-4, "{rung:?}");
     for pair in rung.frames.windows(2) {
         assert!(pair[0].min_weight < pair[1].min_weight);
-        assert!(pair[0].rays.total() >= pair[1].rays.total(), "{rung}");
+        assert!(pair[0].rays.total() >= pair[1].rays.total(), "{rung:?}");
     }
     let last = rung.frames.last().unwrap();
-    assert!(last.rays.total() < all.rays.total() && last.rms > 10.0 * all.rms, "{rung}");
-    assert!(!rung.to_string().contains("NaN"), "{rung}");
+    assert!(last.rays.total() < all.rays.total() && last.rms > 10.0 * all.rms, "{rung:?}");
 }
 
 #[test]
@@ -195,13 +195,13 @@ fn more_samples_come_nearer_to_the_truth_and_stratified_ones_faster() {
             run.pictures.iter().map(|picture| picture.n).collect::<Vec<_>>(),
             [1, 2, 3, 4, 5, 6, 7, 8]
         );
-        assert!(run.pictures[7].rms < run.pictures[0].rms / 3.0, "{rung}");
+        assert!(run.pictures[7].rms < run.pictures[0].rms / 3.0, "{rung:?}");
         run.slope.unwrap()
     };
     // The error of N independent samples goes with N^−½; of a sample in each of N cells, edges need N^−¾.
-    assert!((slope("random") + 0.5).abs() < 0.06, "{rung}");
-    assert!(slope("jittered") < -0.62, "{rung}");
-    assert!(rung.least_over_numerical().unwrap() > 10.0, "{rung}");
+    assert!((slope("random") + 0.5).abs() < 0.06, "{rung:?}");
+    assert!(slope("jittered") < -0.62, "{rung:?}");
+    assert!(rung.least_over_numerical().unwrap() > 10.0, "{rung:?}");
 }
 
 #[test]
@@ -212,9 +212,8 @@ fn pictures_without_error_have_no_slope_and_keep_their_size_within_bounds() {
     (empty.image.width, empty.image.height) = (100_000, 1);
     let rung = SamplesRung::measure(&empty, &options(&AtomicBool::new(false))).unwrap();
     assert_eq!(rung.size, [8192, 1]);
-    assert!(rung.patterns.iter().all(|run| run.slope.is_none()), "{rung}");
+    assert!(rung.patterns.iter().all(|run| run.slope.is_none()), "{rung:?}");
     assert_eq!((rung.numerical_rms, rung.least_over_numerical()), (0.0, None));
-    assert!(!rung.to_string().contains("NaN") && !rung.to_string().contains("inf"), "{rung}");
 }
 
 #[test]
@@ -225,7 +224,10 @@ fn a_measurement_says_how_far_it_is_and_stops_when_told_to() {
     let stop = AtomicBool::new(false);
     let options = RungOptions { repeats: 0, on_progress: &on_progress, ..options(&stop) };
     let rung = MinWeightRung::measure(&scene, &options).unwrap().unwrap();
-    assert!(rung.frames.iter().all(|frame| frame.seconds.len() == 1), "no repeats are one");
+    assert!(
+        rung.frames.iter().all(|frame| frame.seconds.is_some_and(|seconds| seconds.runs == 1)),
+        "no repeats are one"
+    );
     let seen = seen.lock().unwrap();
     assert_eq!(
         seen.iter().map(|progress| (progress.done, progress.steps)).collect::<Vec<_>>(),

@@ -1,15 +1,13 @@
 //! The rung of `min_weight`: what it buys not to trace rays that carry little light, and what that costs.
 
-use super::table::{Table, or_none, short};
-use super::{RungOptions, median, rendered, shrunk};
+use super::{RungOptions, rendered, shrunk};
 use crate::film::Image;
-use crate::measure::{Difference, Distance};
+use crate::measure::{Better, Difference, Distance, Spread};
 use crate::prepare::Plan;
 use crate::rays::RayCounts;
 use crate::render::{Engine, RenderError, Rendered};
 use crate::scene::Scene;
 use serde::Serialize;
-use std::fmt::{self, Display, Formatter};
 
 /// Frames of one scene, each without the rays whose weight is below a limit.
 #[derive(Clone, Debug, Serialize)]
@@ -25,8 +23,8 @@ pub struct MinWeightRung {
 pub struct MinWeightFrame {
     /// The limit.
     pub min_weight: f32,
-    /// To trace all rays, round by round.
-    pub seconds: Vec<f64>,
+    /// To trace all rays; of the rounds.
+    pub seconds: Option<Spread>,
     /// Rays traced.
     pub rays: RayCounts,
     /// Root of the mean of the squared differences of all channels from the reference's picture with all rays, linear.
@@ -59,6 +57,7 @@ impl MinWeightRung {
         (scene.render.samples, scene.render.min_weight) = (1, 0.0);
         let truth = rendered(&scene, Engine::Reference, options)?.image;
         let mut frames: Vec<MinWeightFrame> = Vec::new();
+        let mut seconds = LIMITS.map(|_| Vec::new());
         for round in 0..options.rounds() {
             options.step("frames without weak rays", 1 + round, steps)?;
             for (place, limit) in LIMITS.into_iter().enumerate() {
@@ -67,8 +66,11 @@ impl MinWeightRung {
                 if frames.len() == place {
                     frames.push(MinWeightFrame::new(limit, &frame, &truth));
                 }
-                frames[place].seconds.push(frame.trace_seconds);
+                seconds[place].push(frame.trace_seconds);
             }
+        }
+        for (frame, seconds) in frames.iter_mut().zip(seconds) {
+            frame.seconds = Spread::of(seconds, Better::Less);
         }
         Ok(Some(Self { size: [scene.image.width, scene.image.height], frames }))
     }
@@ -80,44 +82,10 @@ impl MinWeightFrame {
         let difference = Difference::between(truth, &frame.image, Distance::LIMIT);
         Self {
             min_weight,
-            seconds: Vec::new(),
+            seconds: None,
             rays: frame.rays,
             rms: difference.map_or(f64::INFINITY, |difference| difference.rms),
             pixels_over: difference.map_or(0, |difference| difference.pixels_over),
         }
-    }
-}
-
-impl Display for MinWeightRung {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let [width, height] = self.size;
-        writeln!(f, "without weak rays, {width} x {height} pixels, one sample each")?;
-        let mut table = Table::new(&[
-            "min_weight",
-            "seconds",
-            "over 0",
-            "Mrays",
-            "RMSE",
-            "pixels over 1/255",
-            "% of pixels",
-        ]);
-        let first = self.frames.first().and_then(|frame| median(&frame.seconds));
-        for frame in &self.frames {
-            let seconds = median(&frame.seconds);
-            let speedup = first.zip(seconds).filter(|(_, seconds)| *seconds > 0.0);
-            table.add([
-                match frame.min_weight {
-                    0.0 => "0".to_owned(),
-                    limit => format!("1/{}", 1.0 / limit),
-                },
-                or_none(seconds, short),
-                or_none(speedup.map(|(first, seconds)| first / seconds), short),
-                short(frame.rays.total() as f64 / 1e6),
-                short(frame.rms),
-                frame.pixels_over.to_string(),
-                short(100.0 * frame.pixels_over as f64 / (f64::from(width) * f64::from(height))),
-            ]);
-        }
-        write!(f, "{table}")
     }
 }

@@ -3,6 +3,7 @@
 //! - `kernels`: formulas for the tests of rays against spheres and triangles, on a frame's own rays
 //! - `min_weight`: leaving out rays that carry little light
 //! - `samples`: how many samples a pixel, and where they lie
+//! - `all`: every rung that a scene has
 //!
 //! All is the same from run to run but for times. Nothing that is undefined gets a number: a rung that a scene does not have
 //! is none, and so is a percentile of nothing.
@@ -10,7 +11,10 @@
 pub mod kernels;
 pub mod min_weight;
 pub mod samples;
-mod table;
+
+mod all;
+
+pub use all::Rungs;
 
 use crate::film::Region;
 use crate::lanes::Width;
@@ -79,25 +83,11 @@ fn shrunk(scene: &Scene, most_pixels: u32) -> Scene {
     scene
 }
 
-/// The middle number, of an even count the upper of the two; none of nothing.
-fn median(numbers: &[f64]) -> Option<f64> {
-    let mut sorted = numbers.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{Camera, Geometry, ImageSettings, Projection, RenderSettings, Rgb};
     use glam::Vec3;
-
-    #[test]
-    fn the_median_is_the_middle_of_the_sorted_numbers() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
-        assert_eq!(median(&[5.0]), Some(5.0));
-        assert_eq!(median(&[]), None);
-    }
 
     #[test]
     fn a_large_picture_shrinks_to_so_many_pixels_and_keeps_its_shape_and_a_small_one_stays() {

@@ -1,13 +1,11 @@
 //! The rung of samples: how far a picture of few samples a pixel is from one of very many, and at what cost.
 
-use super::table::{Table, or_none, short};
-use super::{RungOptions, median, rendered, shrunk};
+use super::{RungOptions, rendered, shrunk};
 use crate::film::Image;
-use crate::measure::Difference;
+use crate::measure::{Better, Difference, Spread};
 use crate::render::{Engine, RenderError};
 use crate::scene::{RenderSettings, Sampling, Scene};
 use serde::Serialize;
-use std::fmt::{self, Display, Formatter};
 
 /// Pictures of one scene by samples a pixel and by where these lie.
 #[derive(Clone, Debug, Serialize)]
@@ -40,8 +38,8 @@ pub struct PatternRun {
 pub struct SampledPicture {
     /// n.
     pub n: u32,
-    /// To trace all rays, round by round.
-    pub seconds: Vec<f64>,
+    /// To trace all rays; of the rounds.
+    pub seconds: Option<Spread>,
     /// Root of the mean of the squared differences of all channels from the truth, linear.
     pub rms: f64,
 }
@@ -84,19 +82,24 @@ impl SamplesRung {
 
         let new = |(sampling, _)| PatternRun { sampling, pictures: Vec::new(), slope: None };
         let mut patterns: Vec<PatternRun> = Sampling::NAMES.map(new).into();
+        let mut seconds = vec![Vec::new(); patterns.len() * LARGEST_N as usize];
         for round in 0..options.rounds() {
             options.step("few samples a pixel", 2 + round, steps)?;
             for n in 1..=LARGEST_N {
-                for ((_, sampling), pattern) in Sampling::NAMES.into_iter().zip(&mut patterns) {
+                for (place, (_, sampling)) in Sampling::NAMES.into_iter().enumerate() {
                     (scene.render.sampling, scene.render.samples) = (sampling, n);
                     let picture = rendered(&scene, engine, options)?;
                     if round == 0 {
                         let rms = rms(&truth, &picture.image);
-                        pattern.pictures.push(SampledPicture { n, seconds: Vec::new(), rms });
+                        patterns[place].pictures.push(SampledPicture { n, seconds: None, rms });
                     }
-                    pattern.pictures[n as usize - 1].seconds.push(picture.trace_seconds);
+                    seconds[place * LARGEST_N as usize + n as usize - 1].push(picture.trace_seconds);
                 }
             }
+        }
+        let pictures = patterns.iter_mut().flat_map(|pattern| &mut pattern.pictures);
+        for (picture, seconds) in pictures.zip(seconds) {
+            picture.seconds = Spread::of(seconds, Better::Less);
         }
         for pattern in &mut patterns {
             let points = pattern.pictures.iter().filter(|picture| picture.n > 1);
@@ -133,40 +136,6 @@ fn log_slope(points: &[(f64, f64)]) -> Option<f64> {
     let covariance: f64 = logs.iter().map(|(x, y)| (x - x_mean) * (y - y_mean)).sum();
     let variance: f64 = logs.iter().map(|(x, _)| (x - x_mean) * (x - x_mean)).sum();
     (variance > 0.0).then(|| covariance / variance)
-}
-
-impl Display for SamplesRung {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let [width, height] = self.size;
-        writeln!(f, "RMSE against {} samples a pixel, {width} x {height} pixels", self.truth_samples)?;
-        let mut heading = vec!["samples".to_owned()];
-        for pattern in &self.patterns {
-            heading.extend([pattern.sampling.to_owned(), "seconds".to_owned()]);
-        }
-        let heading: Vec<&str> = heading.iter().map(String::as_str).collect();
-        let mut table = Table::new(&heading);
-        for n in 1..=LARGEST_N {
-            let pictures = self.patterns.iter().filter_map(|pattern| pattern.pictures.get(n as usize - 1));
-            let cells =
-                pictures.flat_map(|picture| [short(picture.rms), or_none(median(&picture.seconds), short)]);
-            table.add([format!("{n} x {n}")].into_iter().chain(cells));
-        }
-        let slopes = self
-            .patterns
-            .iter()
-            .flat_map(|pattern| [or_none(pattern.slope, |slope| format!("{slope:.2}")), String::new()]);
-        table.add(["slope".to_owned()].into_iter().chain(slopes));
-        write!(f, "{table}")?;
-        match self.least_over_numerical() {
-            Some(ratio) if ratio >= 1.0 => writeln!(
-                f,
-                "numerical error: {}, 1/{} of the least sampling error",
-                short(self.numerical_rms),
-                short(ratio)
-            ),
-            _ => writeln!(f, "numerical error: {}", short(self.numerical_rms)),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -3,14 +3,12 @@
 //! Random rays do not find cracks; aimed ones do (Schirra, "How Reliable Are Practical Point-in-Polygon Strategies?", 2008).
 
 use super::super::RungOptions;
-use super::super::table::{Table, or_none, short};
 use super::aimed::{Aimed, Mesh};
 use super::{Formula, answers, triangle};
 use crate::lanes::Width;
 use crate::prepare::Prepared;
 use crate::render::RenderError;
 use serde::Serialize;
-use std::fmt::{self, Display, Formatter};
 
 /// Leaks between triangles, formula by formula. Rays start at the eye; they are aimed at points of edges that two triangles
 /// share and at corners that triangles lie all around, as seen from there.
@@ -70,28 +68,4 @@ fn leaks(formula: triangle::Formula, width: Width, aimed: &Aimed) -> u64 {
     let ts = answers(formula, width, &aimed.pairs);
     let gets_through = |pairs: &&std::ops::Range<usize>| ts[(*pairs).clone()].iter().all(|t| t.is_infinite());
     aimed.rays.iter().filter(gets_through).count() as u64
-}
-
-impl Display for LeakRung {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        writeln!(f, "leaks of {} rays aimed at edges and {} at corners", self.edge_rays, self.corner_rays)?;
-        let mut table = Table::new(&["formula", "at edges", "a million", "at corners", "a million"]);
-        let per_million =
-            |leaks: u64, rays: u64| or_none((rays > 0).then(|| leaks as f64 * 1e6 / rays as f64), short);
-        for leaks in &self.formulas {
-            let name = if leaks.is_engines {
-                format!("{} (the engine's)", leaks.name)
-            } else {
-                leaks.name.to_owned()
-            };
-            table.add([
-                name,
-                leaks.at_edges.to_string(),
-                per_million(leaks.at_edges, self.edge_rays),
-                leaks.at_corners.to_string(),
-                per_million(leaks.at_corners, self.corner_rays),
-            ]);
-        }
-        write!(f, "{table}")
-    }
 }

@@ -23,10 +23,9 @@ mod triangle;
 pub use errors::PairErrors;
 pub use leaks::{LeakRung, Leaks};
 
-use super::table::{Table, or_none, short};
-use super::{RungOptions, median};
+use super::RungOptions;
 use crate::lanes::Width;
-use crate::measure::Percentiles;
+use crate::measure::{Better, Spread};
 use crate::prepare::Prepared;
 use crate::rays::{RayKind, RaySet};
 use crate::reference::PairTruth;
@@ -35,7 +34,6 @@ use columns::{Columns, TILE};
 use pairs::{Pairs, Sample};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 
 /// Pairs of a kind of primitive are sampled down to as many.
@@ -74,8 +72,8 @@ pub struct FormulaRun {
     pub name: &'static str,
     /// Whether the engine uses it.
     pub is_engines: bool,
-    /// For all pairs once, on one thread, round by round.
-    pub seconds: Vec<f64>,
+    /// For all pairs once, on one thread; of the rounds.
+    pub seconds: Option<Spread>,
     /// Against the truth.
     pub errors: PairErrors,
 }
@@ -133,7 +131,7 @@ fn rung<F: Formula<N>, const N: usize>(
         FormulaRun {
             name: formula.name(),
             is_engines: formula == F::ENGINES,
-            seconds,
+            seconds: Spread::of(seconds, Better::Less),
             errors: PairErrors::of(&truths, &ts),
         }
     });
@@ -154,65 +152,10 @@ fn answers<F: Formula<N>, const N: usize>(formula: F, width: Width, pairs: &Colu
 }
 
 impl KernelRung {
-    /// Nanoseconds of one test by a formula, the median of the rounds; none without rounds.
+    /// Nanoseconds of one test by a formula: the median of the rounds, and its median absolute deviation.
     #[must_use]
-    pub fn nanoseconds(&self, formula: &FormulaRun) -> Option<f64> {
-        median(&formula.seconds).map(|seconds| seconds * 1e9 / self.pairs as f64)
-    }
-}
-
-impl Display for KernelRungs {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for rung in [&self.sphere, &self.triangle].into_iter().flatten() {
-            writeln!(
-                f,
-                "{} tests of {} rays: {} of {} pairs, {} lanes, one thread",
-                rung.primitive,
-                self.rays.name(),
-                rung.pairs,
-                rung.tested,
-                rung.lanes
-            )?;
-            write!(f, "{rung}")?;
-        }
-        Ok(())
-    }
-}
-
-impl Display for KernelRung {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let mut table = Table::new(&[
-            "formula",
-            "ns a test",
-            "Mtests/s",
-            "mistakes",
-            "near edges",
-            "t, ulp: p50",
-            "p99",
-            "max",
-            "backward: p50",
-            "p99",
-            "max",
-        ]);
-        for run in &self.formulas {
-            let errors = &run.errors;
-            let nanoseconds = self.nanoseconds(run);
-            let percentiles = |of: Option<Percentiles>| {
-                [of.map(|of| of.p50), of.map(|of| of.p99), of.map(|of| of.max)]
-                    .map(|number| or_none(number, short))
-            };
-            let name =
-                if run.is_engines { format!("{} (the engine's)", run.name) } else { run.name.to_owned() };
-            let row = [
-                name,
-                or_none(nanoseconds, short),
-                or_none(nanoseconds.filter(|&ns| ns > 0.0), |ns| short(1e3 / ns)),
-                errors.mistakes().to_string(),
-                errors.near_edges().to_string(),
-            ];
-            table
-                .add(row.into_iter().chain(percentiles(errors.t_ulps)).chain(percentiles(errors.t_backward)));
-        }
-        write!(f, "{table}")
+    pub fn nanoseconds(&self, formula: &FormulaRun) -> Option<[f64; 2]> {
+        let Spread { median, median_absolute_deviation, .. } = formula.seconds?;
+        Some([median, median_absolute_deviation].map(|seconds| seconds * 1e9 / self.pairs as f64))
     }
 }

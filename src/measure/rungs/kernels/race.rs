@@ -1,8 +1,9 @@
 //! Formulas timed in turn.
 
-use super::super::{RungOptions, median};
+use super::super::RungOptions;
 use super::Formula;
 use super::columns::{Columns, TILE};
+use crate::measure::{Better, Spread};
 use crate::render::RenderError;
 use std::hint::black_box;
 use std::time::Instant;
@@ -39,7 +40,7 @@ pub(super) fn race<F: Formula<N>, const N: usize>(
                     }
                     start.elapsed().as_secs_f64() / times as f64
                 });
-                seconds[round] += median(&tries).unwrap_or_default();
+                seconds[round] += Spread::of(tries.into(), Better::Less).map_or(0.0, |tries| tries.median);
             }
         }
     }

@@ -1,0 +1,153 @@
+//! The tables of what accuracy costs.
+
+use super::block::Block;
+use super::table::{NONE, Table, maybe, number};
+use crate::measure::rungs::Rungs;
+use crate::measure::rungs::kernels::{KernelRung, LeakRung};
+use crate::measure::rungs::min_weight::{MinWeightFrame, MinWeightRung};
+use crate::measure::rungs::samples::SamplesRung;
+use crate::measure::{Percentiles, Spread};
+use crate::rays::RayKind;
+
+/// Formulas, leaks, weak rays, samples; what a scene does not have is left out.
+pub(crate) fn rungs(rungs: &Rungs) -> Vec<Block> {
+    let mut blocks = formulas(rungs);
+    blocks.extend(rungs.leaks.iter().flat_map(leaks));
+    blocks.extend(rungs.min_weight.iter().flat_map(weak_rays));
+    blocks.extend(samples(&rungs.samples));
+    blocks
+}
+
+/// A formula's name, and whether it is the engine's.
+pub(super) fn formula_name(name: &str, is_engines: bool) -> String {
+    if is_engines { format!("{name}, the engine's") } else { name.to_owned() }
+}
+
+/// A limit as a fraction, which is how people choose it.
+pub(super) fn limit(min_weight: f32) -> String {
+    if min_weight > 0.0 { format!("1/{}", 1.0 / min_weight) } else { "0".into() }
+}
+
+fn median(spread: Option<Spread>) -> Option<f64> {
+    spread.map(|spread| spread.median)
+}
+
+fn formulas(rungs: &Rungs) -> Vec<Block> {
+    if rungs.kernels.is_empty() {
+        return vec![];
+    }
+    let mut blocks = vec![Block::Words(
+        "What formulas cost: pairs of ray and primitive that the frame's rays test, played back through each formula on one \
+         thread. A mistake is an answer that no rounding explains; near an edge rounding does. t in units in the last place, and \
+         as backward error, the roundings of the primitive's place that explain it."
+            .into(),
+    )];
+    for kernels in &rungs.kernels {
+        for rung in [&kernels.sphere, &kernels.triangle].into_iter().flatten() {
+            blocks.extend(formulas_of(kernels.rays, rung));
+        }
+    }
+    blocks
+}
+
+fn formulas_of(rays: RayKind, rung: &KernelRung) -> [Block; 2] {
+    let heading = ["formula", "ns a test", "mistakes", "near edges", "t ulp p50", "p99", "max"];
+    let mut table = Table::new(1, heading.into_iter().chain(["backward p50", "p99", "max"]));
+    for run in &rung.formulas {
+        let mut row = vec![
+            formula_name(run.name, run.is_engines),
+            maybe(rung.nanoseconds(run).map(|[median, _]| median)),
+            run.errors.mistakes().to_string(),
+            run.errors.near_edges().to_string(),
+        ];
+        for percentiles in [run.errors.t_ulps, run.errors.t_backward] {
+            row.extend(match percentiles {
+                Some(Percentiles { p50, p99, max }) => [p50, p99, max].map(number),
+                None => [NONE; 3].map(str::to_owned),
+            });
+        }
+        table.push(row);
+    }
+    let KernelRung { primitive, lanes, tested, pairs, .. } = rung;
+    let words = format!("{primitive}s, {} rays: {pairs} of {tested} pairs, {lanes} lanes", rays.name());
+    [Block::Words(words), Block::Table(table)]
+}
+
+fn leaks(rung: &LeakRung) -> [Block; 2] {
+    let mut table = Table::new(1, ["formula", "at edges", "a million", "at corners", "a million"]);
+    let per_million = |leaks: u64, rays: u64| maybe((rays > 0).then(|| leaks as f64 * 1e6 / rays as f64));
+    for leaks in &rung.formulas {
+        table.push(vec![
+            formula_name(leaks.name, leaks.is_engines),
+            leaks.at_edges.to_string(),
+            per_million(leaks.at_edges, rung.edge_rays),
+            leaks.at_corners.to_string(),
+            per_million(leaks.at_corners, rung.corner_rays),
+        ]);
+    }
+    let words = format!(
+        "Leaks: of {} rays aimed at edges that triangles share, and {} at corners that they lie all around, those that hit none \
+         of them.",
+        rung.edge_rays, rung.corner_rays
+    );
+    [Block::Words(words), Block::Table(table)]
+}
+
+fn weak_rays(rung: &MinWeightRung) -> [Block; 2] {
+    let [width, height] = rung.size;
+    let pixels = f64::from(width) * f64::from(height);
+    let mut table =
+        Table::new(1, ["min_weight", "frame s", "× faster than 0", "Mrays", "RMSE", "over 1/255"]);
+    let all = rung.frames.first().and_then(|frame| median(frame.seconds));
+    for frame in &rung.frames {
+        let MinWeightFrame { min_weight, seconds, rays, rms, pixels_over } = frame;
+        let seconds = median(*seconds);
+        let times =
+            all.zip(seconds).filter(|(_, seconds)| *seconds > 0.0).map(|(all, seconds)| all / seconds);
+        table.push(vec![
+            limit(*min_weight),
+            maybe(seconds),
+            maybe(times),
+            number(rays.total() as f64 / 1e6),
+            number(*rms),
+            format!("{} %", number(100.0 * *pixels_over as f64 / pixels)),
+        ]);
+    }
+    let words = format!(
+        "Without the rays whose weight is below min_weight, {width} x {height} pixels of one sample, against the reference with \
+         all rays."
+    );
+    [Block::Words(words), Block::Table(table)]
+}
+
+fn samples(rung: &SamplesRung) -> Vec<Block> {
+    let [width, height] = rung.size;
+    let heading = rung.patterns.iter().flat_map(|pattern| [pattern.sampling, "frame s"]);
+    let mut table = Table::new(1, ["samples"].into_iter().chain(heading));
+    let rows = rung.patterns.first().map_or(0, |pattern| pattern.pictures.len());
+    for row in 0..rows {
+        let pictures = || rung.patterns.iter().filter_map(|pattern| pattern.pictures.get(row));
+        let name = pictures().next().map_or_else(String::new, |picture| format!("{0} x {0}", picture.n));
+        let cells = pictures().flat_map(|picture| [number(picture.rms), maybe(median(picture.seconds))]);
+        table.push([name].into_iter().chain(cells).collect());
+    }
+    let slopes = rung.patterns.iter().flat_map(|pattern| [slope(pattern.slope), String::new()]);
+    table.push(["slope".to_owned()].into_iter().chain(slopes).collect());
+    let words = format!(
+        "Samples a pixel: RMSE against {} jittered ones of another seed, {width} x {height} pixels. The slope is that of log RMSE \
+         over log samples, from 2 x 2 up.",
+        rung.truth_samples
+    );
+    let least = match rung.least_over_numerical() {
+        Some(ratio) if ratio >= 1.0 => format!(", 1/{} of the least of these", number(ratio)),
+        _ => String::new(),
+    };
+    let own =
+        format!("The engine's own error, at one sample a pixel, is {}{least}.", number(rung.numerical_rms));
+    vec![Block::Words(words), Block::Table(table), Block::Words(own)]
+}
+
+/// Two decimals, which is as much as a slope through seven points says.
+pub(super) fn slope(slope: Option<f64>) -> String {
+    slope.map_or_else(|| NONE.into(), |slope| format!("{slope:.2}"))
+}
