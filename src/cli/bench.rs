@@ -1,7 +1,7 @@
 //! `wavelane bench [SCENE…]`.
 
-use super::progress::{Progress, Style};
-use super::settings::SceneSettings;
+use super::measuring::MeasuringArguments;
+use super::progress::Progress;
 use super::{Failure, interrupt, output};
 use crate::generate::{StandardScene, generate};
 use crate::load;
@@ -27,22 +27,7 @@ pub(super) struct Arguments {
           conflicts_with = "scenes", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     sizes: Vec<u32>,
     #[command(flatten)]
-    settings: SceneSettings,
-    /// Worker threads [default: one a core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
-    /// Timed frames, and passes over recorded rays, of each engine
-    #[arg(long, value_name = "K", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    repeat: u32,
-    /// About so many rays of each kind are traced on their own
-    #[arg(long, value_name = "R", default_value = "262144", value_parser = clap::value_parser!(u64).range(1..))]
-    rays: u64,
-    /// How far it is, on stderr
-    #[arg(long, value_enum, default_value = "auto")]
-    progress: Style,
-    /// Write the result as JSON, to stdout instead of the tables if FILE is -
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    measuring: MeasuringArguments,
     /// An earlier result (--json) to compare with
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
@@ -68,8 +53,8 @@ const GROWN: (StandardScene, u32) = (StandardScene::Terrain, 100_000);
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let inputs: Vec<&Path> =
         arguments.scenes.iter().chain(&arguments.baseline).map(PathBuf::as_path).collect();
-    output::check_json(arguments.json.as_deref(), &inputs)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build();
+    output::check_json(arguments.measuring.json.as_deref(), &inputs)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.measuring.threads()).build();
     let pool = pool.map_err(RenderError::from)?;
     let baseline = arguments.baseline.as_deref().map(|path| baseline(path, pool.current_num_threads()));
     let baseline = baseline.transpose()?;
@@ -78,13 +63,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let scratch =
             tempfile::tempdir().map_err(|why| Failure::Write { path: std::env::temp_dir(), why })?;
         let (work, steps) = work(arguments, &pool);
-        let progress = Progress::new(arguments.progress, steps, "steps");
+        let progress = Progress::new(arguments.measuring.progress, steps, "steps");
         let done = Cell::new(0);
         let on_step = || progress.report(done.replace(done.get() + 1) + 1);
         let options = BenchOptions {
             pool: &pool,
-            repeat: arguments.repeat as usize,
-            rays: arguments.rays,
+            repeat: arguments.measuring.repeat as usize,
+            rays: arguments.measuring.rays,
             scratch: scratch.path(),
             on_step: &on_step,
             stop,
@@ -95,10 +80,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     interrupt::end_if_asked();
 
-    if let Some(path) = &arguments.json {
+    if let Some(path) = &arguments.measuring.json {
         output::json(&report, path)?;
     }
-    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
+    if !arguments.measuring.json_is_stdout() {
         output::result(&benched(&report).trim_end())?;
     }
     let mistakes: u64 = report.scenes.iter().map(SceneBench::mistakes).sum();
@@ -133,7 +118,7 @@ fn work(arguments: &Arguments, pool: &rayon::ThreadPool) -> (Vec<Work>, u64) {
     } else {
         arguments.scenes.iter().cloned().map(Work::File).collect()
     };
-    let repeat = arguments.repeat as usize;
+    let repeat = arguments.measuring.repeat as usize;
     let grown = work.iter().filter(|work| work.is_grown(arguments)).count() as u64;
     let threads = Growth::thread_counts(pool).len() as u64 * (repeat as u64 + 1);
     let growth = grown * (Growth::steps_over_pixels(repeat) + threads);
@@ -188,7 +173,7 @@ impl Work {
         } else {
             loaded.warnings.iter().for_each(output::diagnostic);
         }
-        arguments.settings.apply(&mut scene);
+        arguments.measuring.settings.apply(&mut scene);
         Ok((scene, seconds))
     }
 }
@@ -238,7 +223,7 @@ fn hold_against(arguments: &Arguments, baseline: &Baseline, report: &BenchReport
         ]);
     }
     let words = format!("\nAgainst the baseline.\n\n{}", table.lines());
-    if arguments.json.as_ref().is_some_and(|path| path.as_os_str() == "-") {
+    if arguments.measuring.json_is_stdout() {
         output::diagnostic(&words.trim_end());
     } else {
         output::result(&words.trim_end())?;

@@ -1,7 +1,7 @@
 //! `wavelane compare SCENE`.
 
-use super::progress::{Progress, Style};
-use super::settings::SceneSettings;
+use super::measuring::MeasuringArguments;
+use super::progress::Progress;
 use super::{Failure, interrupt, output};
 use crate::lanes::Width;
 use crate::load;
@@ -20,25 +20,10 @@ pub(super) struct Arguments {
     /// Scene file: .toml, .nff, .obj or .ply, or a folder of .npy
     scene: PathBuf,
     #[command(flatten)]
-    settings: SceneSettings,
-    /// Worker threads [default: one a core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
-    /// Timed frames, and passes over recorded rays, of each wavefront engine; the reference has one
-    #[arg(long, value_name = "K", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    repeat: u32,
-    /// About so many rays of each kind are traced on their own, and looked at one by one
-    #[arg(long, value_name = "R", default_value = "262144", value_parser = clap::value_parser!(u64).range(1..))]
-    rays: u64,
+    measuring: MeasuringArguments,
     /// Measure what accuracy costs, too: other formulas, no weak rays, more samples; takes some times as long
     #[arg(long)]
     rungs: bool,
-    /// How far it is, on stderr
-    #[arg(long, value_enum, default_value = "auto")]
-    progress: Style,
-    /// Write the result as JSON, to stdout instead of the tables if FILE is -
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
     /// Write a page with plots, tables and pictures to a folder, which is made if need be: DIR/index.html
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
@@ -47,7 +32,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut loaded = load::load(&arguments.scene)?;
     output::warnings(&loaded);
-    arguments.settings.apply(&mut loaded.scene);
+    arguments.measuring.settings.apply(&mut loaded.scene);
     let folder = arguments.report.as_deref().map(Folder::open).transpose()?;
     check_json(arguments, folder.as_ref())?;
     let scene = &loaded.scene;
@@ -59,10 +44,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = arguments.scene.display().to_string();
     let command = command(arguments, scene, comparison.threads);
     let compared = Compared::new(scene, name, command, comparison, rungs);
-    if let Some(path) = &arguments.json {
+    if let Some(path) = &arguments.measuring.json {
         output::json(&compared, path)?;
     }
-    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
+    if !arguments.measuring.json_is_stdout() {
         let mut tables = report::tables(&compared.comparison);
         tables.extend(compared.rungs.iter().flat_map(report::rungs));
         let tables = report::text(&tables);
@@ -84,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn check_json(arguments: &Arguments, folder: Option<&Folder>) -> Result<(), Failure> {
     let others: Vec<PathBuf> = folder.iter().flat_map(|folder| folder.files()).collect();
     let others: Vec<&Path> = others.iter().map(PathBuf::as_path).chain([arguments.scene.as_path()]).collect();
-    output::check_json(arguments.json.as_deref(), &others)
+    output::check_json(arguments.measuring.json.as_deref(), &others)
 }
 
 /// A command line that compares the same again, whatever becomes of the scene's own settings and of the defaults.
@@ -100,8 +85,8 @@ fn command(arguments: &Arguments, scene: &Scene, threads: usize) -> String {
         render.samples,
         render.seed,
         render.max_depth,
-        arguments.repeat,
-        arguments.rays,
+        arguments.measuring.repeat,
+        arguments.measuring.rays,
     );
     if arguments.rungs {
         command += " --rungs";
@@ -126,8 +111,8 @@ fn compare(arguments: &Arguments, scene: &Scene) -> Result<(Comparison, Compared
     measured(arguments, "steps", |on_progress, stop| {
         let options = ComparisonOptions {
             threads: threads(arguments),
-            repeat: arguments.repeat as usize,
-            rays: arguments.rays,
+            repeat: arguments.measuring.repeat as usize,
+            rays: arguments.measuring.rays,
             on_progress,
             stop,
         };
@@ -140,16 +125,16 @@ fn measure_rungs(arguments: &Arguments, scene: &Scene, frame: RayCounts) -> Resu
         let options = RungOptions {
             width: Width::BEST,
             threads: threads(arguments),
-            repeats: arguments.repeat as usize,
+            repeats: arguments.measuring.repeat as usize,
             on_progress: &|rungs::Progress { done, steps, .. }| on_progress(done as u64, steps as u64),
             stop,
         };
-        Rungs::measure(scene, frame, arguments.rays, &options)
+        Rungs::measure(scene, frame, arguments.measuring.rays, &options)
     })
 }
 
 fn threads(arguments: &Arguments) -> usize {
-    arguments.threads.map_or(0, usize::from)
+    arguments.measuring.threads()
 }
 
 /// Measures with progress, until it is done or Ctrl-C comes. The measurement gets what to call with the steps done and those
@@ -161,7 +146,7 @@ fn measured<T>(
 ) -> Result<T, Failure> {
     let progress: OnceLock<Progress> = OnceLock::new();
     let on_progress = |done: u64, total: u64| {
-        progress.get_or_init(|| Progress::new(arguments.progress, total, unit)).report(done);
+        progress.get_or_init(|| Progress::new(arguments.measuring.progress, total, unit)).report(done);
     };
     let found = interrupt::watched(|stop| measure(&on_progress, stop));
     if let Some(progress) = progress.get() {

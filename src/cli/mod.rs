@@ -9,6 +9,7 @@ mod explain;
 mod failure;
 mod generate;
 mod interrupt;
+mod measuring;
 mod output;
 mod pixel;
 mod progress;

@@ -197,3 +197,29 @@ impl Baseline {
         changes
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slower_is_what_is_slower_in_the_median_and_at_best() {
+        let change = |slower, best_slower| Change {
+            scene: "any 1".into(),
+            what: "frame s".into(),
+            before: 1.0,
+            after: slower,
+            slower,
+            best_slower,
+        };
+        for (slower, best_slower, expected) in [
+            (1.06, 1.06, true),
+            (1.06, 1.04, false),
+            (1.04, 1.06, false),
+            (0.9, 1.2, false),
+            (1.05, 1.05, false),
+        ] {
+            assert_eq!(change(slower, best_slower).is_slower(0.05), expected, "{slower} {best_slower}");
+        }
+    }
+}
