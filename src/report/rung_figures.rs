@@ -1,11 +1,11 @@
 //! The plots of what accuracy costs.
 
 use super::figures::Figure;
-use super::plot::{Axis, Chart, Colour, Mark, PlotError, Point, Rule, Series};
+use super::plot::{Axis, Chart, Colour, Mark, PlotError, Point, Series};
 use super::rungs::{formula_name, limit, slope};
-use crate::measure::Comparison;
 use crate::measure::rungs::Rungs;
 use crate::measure::rungs::kernels::{FormulaRun, KernelRung, LeakRung};
+use crate::measure::rungs::min_weight::MinWeightFrame;
 use crate::measure::rungs::samples::PatternRun;
 use crate::rays::RayKind;
 
@@ -66,10 +66,9 @@ fn formula(rung: &KernelRung, run: &FormulaRun, leaks: Option<&LeakRung>) -> Opt
     if let Some(leaks) = leaks.and_then(|leaks| leaks.formulas.iter().find(|leaks| leaks.name == run.name)) {
         label += &format!(", {}", counted(leaks.at_edges + leaks.at_corners, "leak"));
     }
-    let (colour, mark) =
-        if run.is_engines { (Colour::LANES[3], Mark::Full) } else { (Colour::LANES[1], Mark::Open) };
+    let colour = if run.is_engines { Colour::LANES[3] } else { Colour::LANES[1] };
     let points = vec![Point { x, y, y_spread, label }];
-    (x.is_finite() && y.is_finite()).then_some(Series { points, colour, mark, is_line: false })
+    (x.is_finite() && y.is_finite()).then_some(Series { points, colour, mark: Mark::Full, is_line: false })
 }
 
 fn counted(count: u64, what: &str) -> String {
@@ -83,7 +82,7 @@ fn counted(count: u64, what: &str) -> String {
 /// Time of a frame over its error: a point for each limit.
 fn weak_rays(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
     let Some(rung) = &rungs.min_weight else { return Ok(None) };
-    let point = |frame: &crate::measure::rungs::min_weight::MinWeightFrame| {
+    let point = |frame: &MinWeightFrame| {
         let seconds = frame.seconds?;
         let label = if frame.min_weight > 0.0 { limit(frame.min_weight) } else { "all rays".into() };
         let y_spread = seconds.median_absolute_deviation;
@@ -93,17 +92,17 @@ fn weak_rays(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
     if points.is_empty() {
         return Ok(None);
     }
-    let step = Rule { x: Comparison::LIMIT, label: "a step of 8 bits, 1/255".into(), colour: Colour::MUTED };
     let x = Axis::log(
         "error of the picture: RMSE against the reference with all rays, linear colour",
-        points.iter().map(|point| point.x).chain([step.x]),
+        points.iter().map(|point| point.x),
     );
     let y = Axis::linear("time of the frame (s)", points.iter().map(|point| point.y + point.y_spread));
-    let series = vec![Series { points, colour: Colour::LANES[3], mark: Mark::Full, is_line: true }];
+    // A line through the points would run through their labels.
+    let series = vec![Series { points, colour: Colour::LANES[3], mark: Mark::Full, is_line: false }];
     let [width, height] = rung.size;
     Ok(Some(Figure {
         file: WEAK_RAYS,
-        svg: Chart { x, y, series, rules: vec![step] }.draw()?,
+        svg: Chart { x, y, series, rules: vec![] }.draw()?,
         caption: format!(
             "Without the rays whose weight is below min_weight, which the points are labelled with: down is faster, left is nearer \
              to the truth. {width} × {height} pixels of one sample, medians."
@@ -121,7 +120,9 @@ fn samples(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
         return Ok(None);
     }
     let points = || series.iter().flat_map(|series| &series.points);
-    let x = Axis::log("time of the picture (s)", points().map(|point| point.x));
+    let longest = points().map(|point| point.x).fold(0.0, f64::max);
+    // Lines have their names right of their ends.
+    let x = Axis::log("time of the picture (s)", points().map(|point| point.x).chain([4.0 * longest]));
     let y = Axis::log("error: RMSE, linear colour", points().map(|point| point.y));
     let svg = Chart { x, y, series, rules: vec![] }.draw()?;
     let [width, height] = rung.size;
