@@ -2,7 +2,7 @@
 
 use super::figures::Figure;
 use super::plot::{Axis, Chart, Colour, Mark, PlotError, Point, Series};
-use super::rungs::{formula_name, limit, slope};
+use super::rungs::{limit, slope};
 use crate::measure::rungs::Rungs;
 use crate::measure::rungs::kernels::{FormulaRun, KernelRung, LeakRung};
 use crate::measure::rungs::min_weight::MinWeightFrame;
@@ -40,9 +40,11 @@ fn formulas(
         return Ok(None);
     }
     let points = || series.iter().flat_map(|series| &series.points);
+    let largest = points().map(|point| point.x).fold(0.0, f64::max);
+    // Names are long and stand right of their points.
     let x = Axis::log(
         "error of t: 99th percentile, roundings of the primitive's place",
-        points().map(|point| point.x),
+        points().map(|point| point.x).chain([8.0 * largest]),
     );
     let y = Axis::linear("time of a test (ns)", points().map(|point| point.y + point.y_spread));
     let svg = Chart { x, y, series, rules: vec![] }.draw()?;
@@ -51,8 +53,8 @@ fn formulas(
         file,
         svg,
         caption: format!(
-            "Formulas for {}s, on pairs that primary rays test: down is faster, left is nearer to the truth. {} lanes, one thread, \
-             medians. A mistake is an answer that no rounding explains.{aimed}",
+            "Formulas for {}s, on pairs that primary rays test: down is faster, left is nearer to the truth; the full circle is the \
+             engine's. {} lanes, one thread, medians. A mistake is an answer that no rounding explains.{aimed}",
             rung.primitive, rung.lanes
         ),
     }))
@@ -61,14 +63,14 @@ fn formulas(
 fn formula(rung: &KernelRung, run: &FormulaRun, leaks: Option<&LeakRung>) -> Option<Series> {
     let [y, y_spread] = rung.nanoseconds(run)?;
     let x = run.errors.t_backward?.p99;
-    let mut label =
-        format!("{}: {}", formula_name(run.name, run.is_engines), counted(run.errors.mistakes(), "mistake"));
+    let mut label = format!("{}: {}", run.name, counted(run.errors.mistakes(), "mistake"));
     if let Some(leaks) = leaks.and_then(|leaks| leaks.formulas.iter().find(|leaks| leaks.name == run.name)) {
         label += &format!(", {}", counted(leaks.at_edges + leaks.at_corners, "leak"));
     }
-    let colour = if run.is_engines { Colour::LANES[3] } else { Colour::LANES[1] };
+    let (colour, mark) =
+        if run.is_engines { (Colour::LANES[3], Mark::Full) } else { (Colour::LANES[1], Mark::Open) };
     let points = vec![Point { x, y, y_spread, label }];
-    (x.is_finite() && y.is_finite()).then_some(Series { points, colour, mark: Mark::Full, is_line: false })
+    (x.is_finite() && y.is_finite()).then_some(Series { points, colour, mark, is_line: false })
 }
 
 fn counted(count: u64, what: &str) -> String {
