@@ -1,11 +1,11 @@
 //! The plots of what accuracy costs.
 
 use super::figures::Figure;
-use super::plot::{Axis, Chart, Colour, Mark, PlotError, Point, Rule, Series};
-use super::rungs::{formula_name, limit, slope};
-use crate::measure::Comparison;
+use super::plot::{Axis, Chart, Colour, Mark, PlotError, Point, Series};
+use super::rungs::{limit, slope};
 use crate::measure::rungs::Rungs;
 use crate::measure::rungs::kernels::{FormulaRun, KernelRung, LeakRung};
+use crate::measure::rungs::min_weight::MinWeightFrame;
 use crate::measure::rungs::samples::PatternRun;
 use crate::rays::RayKind;
 
@@ -40,9 +40,11 @@ fn formulas(
         return Ok(None);
     }
     let points = || series.iter().flat_map(|series| &series.points);
+    let largest = points().map(|point| point.x).fold(0.0, f64::max);
+    // Names are long and stand right of their points.
     let x = Axis::log(
         "error of t: 99th percentile, roundings of the primitive's place",
-        points().map(|point| point.x),
+        points().map(|point| point.x).chain([8.0 * largest]),
     );
     let y = Axis::linear("time of a test (ns)", points().map(|point| point.y + point.y_spread));
     let svg = Chart { x, y, series, rules: vec![] }.draw()?;
@@ -51,8 +53,8 @@ fn formulas(
         file,
         svg,
         caption: format!(
-            "Formulas for {}s, on pairs that primary rays test: down is faster, left is nearer to the truth. {} lanes, one thread, \
-             medians. A mistake is an answer that no rounding explains.{aimed}",
+            "Formulas for {}s, on pairs that primary rays test: down is faster, left is nearer to the truth; the full circle is the \
+             engine's. {} lanes, one thread, medians. A mistake is an answer that no rounding explains.{aimed}",
             rung.primitive, rung.lanes
         ),
     }))
@@ -61,8 +63,7 @@ fn formulas(
 fn formula(rung: &KernelRung, run: &FormulaRun, leaks: Option<&LeakRung>) -> Option<Series> {
     let [y, y_spread] = rung.nanoseconds(run)?;
     let x = run.errors.t_backward?.p99;
-    let mut label =
-        format!("{}: {}", formula_name(run.name, run.is_engines), counted(run.errors.mistakes(), "mistake"));
+    let mut label = format!("{}: {}", run.name, counted(run.errors.mistakes(), "mistake"));
     if let Some(leaks) = leaks.and_then(|leaks| leaks.formulas.iter().find(|leaks| leaks.name == run.name)) {
         label += &format!(", {}", counted(leaks.at_edges + leaks.at_corners, "leak"));
     }
@@ -83,7 +84,7 @@ fn counted(count: u64, what: &str) -> String {
 /// Time of a frame over its error: a point for each limit.
 fn weak_rays(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
     let Some(rung) = &rungs.min_weight else { return Ok(None) };
-    let point = |frame: &crate::measure::rungs::min_weight::MinWeightFrame| {
+    let point = |frame: &MinWeightFrame| {
         let seconds = frame.seconds?;
         let label = if frame.min_weight > 0.0 { limit(frame.min_weight) } else { "all rays".into() };
         let y_spread = seconds.median_absolute_deviation;
@@ -93,17 +94,17 @@ fn weak_rays(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
     if points.is_empty() {
         return Ok(None);
     }
-    let step = Rule { x: Comparison::LIMIT, label: "a step of 8 bits, 1/255".into(), colour: Colour::MUTED };
     let x = Axis::log(
         "error of the picture: RMSE against the reference with all rays, linear colour",
-        points.iter().map(|point| point.x).chain([step.x]),
+        points.iter().map(|point| point.x),
     );
     let y = Axis::linear("time of the frame (s)", points.iter().map(|point| point.y + point.y_spread));
-    let series = vec![Series { points, colour: Colour::LANES[3], mark: Mark::Full, is_line: true }];
+    // A line through the points would run through their labels.
+    let series = vec![Series { points, colour: Colour::LANES[3], mark: Mark::Full, is_line: false }];
     let [width, height] = rung.size;
     Ok(Some(Figure {
         file: WEAK_RAYS,
-        svg: Chart { x, y, series, rules: vec![step] }.draw()?,
+        svg: Chart { x, y, series, rules: vec![] }.draw()?,
         caption: format!(
             "Without the rays whose weight is below min_weight, which the points are labelled with: down is faster, left is nearer \
              to the truth. {width} × {height} pixels of one sample, medians."
@@ -121,7 +122,9 @@ fn samples(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
         return Ok(None);
     }
     let points = || series.iter().flat_map(|series| &series.points);
-    let x = Axis::log("time of the picture (s)", points().map(|point| point.x));
+    let longest = points().map(|point| point.x).fold(0.0, f64::max);
+    // Lines have their names right of their ends.
+    let x = Axis::log("time of the picture (s)", points().map(|point| point.x).chain([4.0 * longest]));
     let y = Axis::log("error: RMSE, linear colour", points().map(|point| point.y));
     let svg = Chart { x, y, series, rules: vec![] }.draw()?;
     let [width, height] = rung.size;

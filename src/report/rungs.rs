@@ -19,7 +19,7 @@ pub(crate) fn rungs(rungs: &Rungs) -> Vec<Block> {
 }
 
 /// A formula's name, and whether it is the engine's.
-pub(super) fn formula_name(name: &str, is_engines: bool) -> String {
+fn formula_name(name: &str, is_engines: bool) -> String {
     if is_engines { format!("{name}, the engine's") } else { name.to_owned() }
 }
 
