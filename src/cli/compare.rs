@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// About so many rays of each kind are traced on their own, and looked at one by one
     #[arg(long, value_name = "R", default_value = "262144", value_parser = clap::value_parser!(u64).range(1..))]
     rays: u64,
-    /// Measure what accuracy costs, too: other formulas, no weak rays, more samples; takes some times as long
+    /// Measure what accuracy costs, too: other formulas, fewer weak rays, more samples; takes several times as long
     #[arg(long)]
     rungs: bool,
     /// How far it is, on stderr
