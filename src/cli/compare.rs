@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     measuring: MeasuringArguments,
-    /// Measure what accuracy costs, too: other formulas, no weak rays, more samples; takes some times as long
+    /// Measure what accuracy costs, too: other formulas, fewer weak rays, more samples; takes several times as long
     #[arg(long)]
     rungs: bool,
     /// Write a page with plots, tables and pictures to a folder, which is made if need be: DIR/index.html
