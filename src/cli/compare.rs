@@ -152,8 +152,9 @@ fn measured<T>(
     if let Some(progress) = progress.get() {
         progress.finish();
     }
+    let found = found?;
     interrupt::end_if_asked();
-    Ok(found?)
+    Ok(found)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::whole_file;
 use serde::Serialize;
 use std::fmt::Display;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A line on stderr. There is nobody to tell if that fails.
 pub(super) fn diagnostic(message: &impl Display) {
@@ -31,12 +31,45 @@ pub(super) fn result(line: &impl Display) -> Result<(), Failure> {
 /// Says early whether [`json`] could write there, without taking the place of another file of the command.
 pub(super) fn check_json(path: Option<&Path>, others: &[&Path]) -> Result<(), Failure> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
-    if others.contains(&path) {
+    if others.iter().any(|other| clash(path, other)) {
         let message =
             format!("--json {}: another file of this command has this name; choose another", path.display());
         return Err(Failure::Usage(message));
     }
     whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })
+}
+
+/// Says early whether files to be written would take each other's place, or that of what is read.
+pub(super) fn check_distinct(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
+    for (index, output) in outputs.iter().enumerate() {
+        if inputs.iter().chain(&outputs[..index]).any(|other| clash(output, other)) {
+            let message =
+                format!("{}: another file of this command has this name; choose another", output.display());
+            return Err(Failure::Usage(message));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file to be written is another file, however both are named, or lies in a folder of arrays that is read. Devices
+/// and pipes are nobody's.
+fn clash(output: &Path, other: &Path) -> bool {
+    const ARRAYS: [&str; 3] = ["vertices.npy", "triangles.npy", "spheres.npy"];
+    if output == Path::new("-") || output.metadata().is_ok_and(|meta| !meta.is_file()) {
+        return false;
+    }
+    let (output, other) = (resolved(output), resolved(other));
+    let is_array = || ARRAYS.iter().any(|name| output == other.join(name));
+    output == other || is_array()
+}
+
+/// A path without links and detours, where there is one; of a file that is not there yet, its folder's.
+fn resolved(path: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+        Some(folder.canonicalize().ok()?.join(path.file_name()?))
+    };
+    path.canonicalize().ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
 /// A report as JSON, to a file, or to stdout where the name is `-`.

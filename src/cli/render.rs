@@ -9,6 +9,7 @@ use crate::lanes::Isa;
 use crate::lanes::Width;
 use crate::load;
 use crate::measure::{self, Machine, RenderReport, Seconds};
+use crate::rays::RayKind;
 use crate::render::{self, RenderOptions, Rendered};
 use crate::scene::Scene;
 use crate::trace;
@@ -99,7 +100,13 @@ fn write_picture(arguments: &Arguments, output: &Path) -> Result<(), Failure> {
     let scene = load_scene(arguments)?;
     let load = start.elapsed().as_secs_f64();
     film::check_writable(output)?;
-    output::check_json(arguments.json.as_deref(), &[output])?;
+    let recorded =
+        arguments.record_rays.as_deref().map(|folder| RayKind::ALL.map(|kind| trace::ray_file(folder, kind)));
+    let mut written = vec![output];
+    written.extend(recorded.iter().flatten().map(PathBuf::as_path));
+    let read = [arguments.scene.as_path()];
+    output::check_distinct(&written, &read)?;
+    output::check_json(arguments.json.as_deref(), &[&written[..], &read].concat())?;
 
     arguments.engine.warn_of_unused_instructions(arguments.progress);
 

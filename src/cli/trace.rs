@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::trace::{self, Hits, Query, RayColumns, ReferenceRun, Run};
 use clap::ValueEnum;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -23,7 +23,7 @@ use std::time::Instant;
 pub(super) struct Arguments {
     /// Scene file, or a folder of vertices.npy with triangles.npy, and spheres.npy
     geometry: PathBuf,
-    /// The rays: an array of shape (R, 8), f32: origin xyz, tmin, direction xyz, tmax
+    /// The rays: an array of shape (R, 8), f32: origin xyz, tmin, direction xyz, tmax. A tmin below 0 counts as 0
     #[arg(long, value_name = "FILE")]
     rays: PathBuf,
     /// What is asked of them
@@ -81,11 +81,13 @@ struct Report {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.engine.warn_of_useless_lanes();
     let hit_files = arguments.hits.as_deref().map(trace::hit_files);
-    for path in hit_files.iter().flatten() {
-        crate::whole_file::probe(path).map_err(|why| Failure::Write { path: path.clone(), why })?;
+    let written: Vec<&Path> = hit_files.iter().flatten().map(PathBuf::as_path).collect();
+    let read = [arguments.geometry.as_path(), arguments.rays.as_path()];
+    output::check_distinct(&written, &read)?;
+    for path in &written {
+        crate::whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_path_buf(), why })?;
     }
-    let written: Vec<_> = hit_files.iter().flatten().map(PathBuf::as_path).collect();
-    output::check_json(arguments.json.as_deref(), &written)?;
+    output::check_json(arguments.json.as_deref(), &[&written[..], &read].concat())?;
     arguments.engine.warn_of_unused_instructions(arguments.progress);
 
     let loaded = load::load_geometry(&arguments.geometry)?;
@@ -183,9 +185,11 @@ fn traced(arguments: &Arguments, scene: &Scene, rays: &RaySet) -> Result<Traced,
 fn timed(arguments: &Arguments, mut pass: impl FnMut() -> f64) -> Vec<f64> {
     let progress = Progress::new(arguments.progress, u64::from(arguments.repeat) + 1, "passes");
     pass();
+    progress.report(1);
     let seconds = (1..=u64::from(arguments.repeat)).map(|done| {
-        progress.report(done);
-        pass()
+        let seconds = pass();
+        progress.report(done + 1);
+        seconds
     });
     let seconds = seconds.collect();
     progress.finish();

@@ -188,8 +188,12 @@ impl Tally {
 
     fn same(&mut self, met: &Met, direction: DVec3, t: f32, found: Option<&Found>) {
         let error = (f64::from(t) - met.t).abs();
-        self.t_ulps.push(error / ulp(met.t));
-        self.t_backward.push(error / met.t_per_rounding);
+        let errors = [error / ulp(met.t), error / met.t_per_rounding];
+        // A t beyond f32 has no unit in its last place.
+        if errors.into_iter().all(f64::is_finite) && met.t <= f64::from(f32::MAX) {
+            self.t_ulps.push(errors[0]);
+            self.t_backward.push(errors[1]);
+        }
         // Where a frame's normals are known, so is its hit.
         if let Some(found) = found.filter(|found| found.id == Some(met.id)) {
             let side = if direction.dot(met.geometric_normal) < 0.0 { 1.0 } else { -1.0 };

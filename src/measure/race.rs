@@ -23,6 +23,9 @@ pub(super) struct Race<'a> {
     pub(super) on_step: &'a dyn Fn(),
 }
 
+/// Rays that are recorded at once, unless many more are asked for: some 250 MB of them.
+const MOST_HELD: u64 = 1 << 22;
+
 /// Frames of one width.
 pub(super) struct Frames {
     pub(super) trace_seconds: Option<Spread>,
@@ -81,13 +84,22 @@ impl Race<'_> {
             .collect())
     }
 
-    /// Rays of every n-th tile of the frame, so that there are not many more of a kind than asked for.
+    /// About as many rays of each kind as asked for, from all over the frame, or all of a kind that has fewer.
+    ///
+    /// Of a frame of very many rays, they are those of every n-th tile; of more tiles where a kind would be left out.
     pub(super) fn record(&self, frame: RayCounts, most: u64) -> Result<RecordedRays, RenderError> {
-        let largest = RayKind::ALL.map(|kind| frame.of(kind)).into_iter().fold(0, u64::max);
-        let every = NonZeroU64::new(largest.div_ceil(most.max(1))).unwrap_or(NonZeroU64::MIN);
-        let engine =
-            Engine::Wavefront { width: Width::BEST, batch: DEFAULT_BATCH, records: false, rays: Some(every) };
-        Ok(self.render(engine)?.recorded)
+        let held = MOST_HELD.max(most.saturating_mul(4));
+        let mut every = NonZeroU64::new(frame.total().div_ceil(held)).unwrap_or(NonZeroU64::MIN);
+        loop {
+            let rays = Some(every);
+            let engine = Engine::Wavefront { width: Width::BEST, batch: DEFAULT_BATCH, records: false, rays };
+            let recorded = self.render(engine)?.recorded;
+            let is_missed = |kind| frame.of(kind) > 0 && recorded.of(kind).is_empty();
+            if every == NonZeroU64::MIN || !RayKind::ALL.into_iter().any(is_missed) {
+                return Ok(recorded.thinned(usize::try_from(most).unwrap_or(usize::MAX)));
+            }
+            every = NonZeroU64::new(every.get() / 8).unwrap_or(NonZeroU64::MIN);
+        }
     }
 
     /// Passes of each width over rays.

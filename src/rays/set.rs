@@ -84,6 +84,26 @@ impl RaySet {
         (0..self.len()).filter(|&row| self.stretch(row).is_none()).count()
     }
 
+    /// About as many of them, or all where there are not more: whole runs of 64, which a packet takes at once, evenly from the
+    /// first to the last.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Self {
+        const RUN: usize = 64;
+        let runs = self.len().div_ceil(RUN);
+        let kept = most.div_ceil(RUN).max(1);
+        if kept >= runs {
+            return self.clone();
+        }
+        let mut thinned = Self::default();
+        for run in (0..kept).map(|index| index * runs / kept) {
+            let rows = run * RUN..((run + 1) * RUN).min(self.len());
+            thinned.rows.extend_from_slice(&self.rows[rows.clone()]);
+            thinned.starts.extend_from_slice(self.starts.get(rows.clone()).unwrap_or_default());
+            thinned.found.extend_from_slice(self.found.get(rows).unwrap_or_default());
+        }
+        thinned
+    }
+
     fn append(&mut self, mut other: Self) {
         self.rows.append(&mut other.rows);
         self.starts.append(&mut other.starts);
@@ -107,6 +127,12 @@ impl RecordedRays {
     pub fn counts(&self) -> RayCounts {
         let [primary, shadow, reflect, refract] = RayKind::ALL.map(|kind| self.of(kind).len() as u64);
         RayCounts { primary, shadow, reflect, refract }
+    }
+
+    /// About as many of each kind: see [`RaySet::thinned`].
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> Self {
+        Self { sets: self.sets.each_ref().map(|set| set.thinned(most)) }
     }
 
     pub(crate) fn append(&mut self, other: Self) {

@@ -49,14 +49,15 @@ impl Tracer<'_> {
         })
     }
 
-    /// Whether anything that casts a shadow is in the way of a ray, apart from surfaces that its end is on as far as f32 can
-    /// tell.
+    /// Whether anything that casts a shadow is in the way of a ray; if it leaves a primitive, as shadow rays do, apart from
+    /// surfaces that its end is on as far as f32 can tell.
     #[must_use]
     pub fn occluded(&self, stretch: &Stretch) -> bool {
         let ray = self.ray(stretch);
-        let off_surface = match stretch.t_max {
-            f64::INFINITY => 0.0,
-            t_max => Precision::F32Queues.reach(t_max * ray.direction),
+        let off_surface = match (stretch.t_max, stretch.departure) {
+            // A stretch that was given as such ends where it ends, not at a light that it was aimed at.
+            (f64::INFINITY, _) | (_, None) => 0.0,
+            (t_max, Some(_)) => Precision::F32Queues.reach(t_max * ray.direction),
         };
         self.hierarchy().occluded(&ray, stretch.t_max, off_surface)
     }

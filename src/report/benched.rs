@@ -31,6 +31,9 @@ fn with_spread(spread: Option<Spread>) -> String {
     spread.map_or_else(
         || NONE.into(),
         |spread| {
+            if spread.runs == 1 {
+                return number(spread.median);
+            }
             let share = 100.0 * spread.median_absolute_deviation / spread.median;
             format!("{} ±{share:.0}%", number(spread.median))
         },

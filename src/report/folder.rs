@@ -35,6 +35,18 @@ const FILES: [&str; 13] = [
 /// A folder that a page can be written to.
 pub(crate) struct Folder {
     path: PathBuf,
+    /// Whether it was not there before.
+    is_new: bool,
+}
+
+/// A folder that was made for nothing goes away again.
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if self.is_new {
+            // Of one that is not empty there is something to keep.
+            let _ = fs::remove_dir(&self.path);
+        }
+    }
 }
 
 /// A page that cannot be written.
@@ -63,8 +75,9 @@ impl Folder {
             let path = path.to_owned();
             |why| FolderError::Write { path, why }
         };
+        let is_new = !path.exists();
         fs::create_dir_all(path).map_err(failed(path))?;
-        let folder = Self { path: path.to_owned() };
+        let folder = Self { path: path.to_owned(), is_new };
         let is_ours = fs::read_to_string(path.join(PAGE)).is_ok_and(|page| page.contains(GENERATOR));
         for file in folder.files() {
             if !is_ours && file.is_file() {

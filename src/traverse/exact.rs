@@ -244,6 +244,10 @@ impl Line {
         if t_max == f32::INFINITY {
             return true;
         }
+        if self.departure == super::NOWHERE {
+            // A stretch that was given as such, not the way to a light.
+            return t < t_max;
+        }
         let hit = self.hit(hierarchy, spot, f64::from(t));
         let rounding = 2.0 * f64::from(UNIT_ROUNDOFF) / hit.cosine.max(LEAST_COSINE);
         hit.t < f64::from(t_max) * (1.0 - rounding)

@@ -270,3 +270,54 @@ fn what_cannot_be_a_baseline_is_refused_before_the_work() {
     let without = wavelane(&["bench", &path, "--fail-if-slower", "5%"]);
     assert_eq!(without.status.code(), Some(2), "{}", stderr(&without));
 }
+
+#[test]
+fn of_each_kind_about_as_many_rays_are_looked_at_as_asked_for() {
+    let folder = Folder::new();
+    let path = scene(&folder, "scene.toml", STILL_LIFE);
+    let found = report(&["compare", &path, "--repeat", "1", "--rays", "256", "--size", "128x128"]);
+    for kind in ["primary", "shadow", "reflect", "refract"] {
+        let (frame, recorded) = (&found["frame_rays"][kind], &found["recorded_rays"][kind]);
+        assert!(frame.as_u64().unwrap() > 256, "{kind}: {frame}");
+        assert_eq!(recorded, 256, "{kind}");
+        assert!(
+            found["engines"][1]["hits"][kind]["hits"].as_u64().unwrap() > 0,
+            "{kind}, from all over the frame"
+        );
+    }
+}
+
+#[test]
+fn progress_comes_to_its_end() {
+    let folder = Folder::new();
+    let path = scene(&folder, "empty.toml", EMPTY);
+    let last = |arguments: &[&str]| {
+        let output = wavelane(&[arguments, &["--progress", "json"]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let last: Value = serde_json::from_str(stderr(&output).lines().last().unwrap()).unwrap();
+        last["percent"].as_u64()
+    };
+    assert_eq!(last(&["compare", &path, "--repeat", "1"]), Some(100));
+    assert_eq!(last(&["bench", &path, "--repeat", "1"]), Some(100));
+    let picture = folder.file("a.png").into_os_string().into_string().unwrap();
+    let rays = folder.file("rays").into_os_string().into_string().unwrap();
+    assert_eq!(last(&["render", &path, "-o", &picture, "--record-rays", &rays]), Some(100));
+    let primary = folder.file("rays/primary.npy").into_os_string().into_string().unwrap();
+    assert_eq!(last(&["trace", &path, "--rays", &primary, "--repeat", "2"]), Some(100));
+}
+
+#[test]
+fn a_baseline_of_impossible_numbers_is_refused() {
+    let folder = Folder::new();
+    let path = scene(&folder, "scene.toml", STILL_LIFE);
+    let run = ["bench", &path, "--repeat", "1", "--threads", "1", "--size", "16x16"];
+    let now = report(&run);
+    for number in [0.0, -1.0, 5e-324, 1e308] {
+        let mut changed = now.clone();
+        changed["scenes"][0]["simd"]["mrays_per_second"]["primary"]["median"] = number.into();
+        let baseline = scene(&folder, "changed.json", &changed.to_string());
+        let output = wavelane(&[&run[..], &["--baseline", &baseline]].concat());
+        assert_eq!(output.status.code(), Some(3), "{number}: {}", stderr(&output));
+        assert!(stderr(&output).contains("which no measurement comes to"), "{}", stderr(&output));
+    }
+}

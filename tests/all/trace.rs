@@ -183,3 +183,61 @@ fn a_frame_s_rays_are_written_by_kind_and_can_be_traced() {
     let by_reference = wavelane(&[&arguments[..], &["--engine", "reference"]].concat());
     assert_eq!(by_reference.status.code(), Some(2), "{}", stderr(&by_reference));
 }
+
+#[test]
+fn the_end_of_a_stretch_is_strict_for_both_queries() {
+    let folder = Folder::new();
+    let geometry = geometry(&folder);
+    // Down from z = 2 to the square at t = 2: just beyond, at, and just before the end.
+    let ends = [2.0_f32.next_up(), 2.0, 2.0_f32.next_down()];
+    let rows = ends.map(|end| [0.5, -0.25, 2.0, 0.0, 0.0, 0.0, -1.0, end]);
+    let rays = folder.write("ends.npy", npy_floats(&rows)).into_os_string().into_string().unwrap();
+    let prefix = folder.file("out").into_os_string().into_string().unwrap();
+    for engine in ["simd", "scalar", "reference"] {
+        for (query, hit) in [("closest", 2.0), ("any", 0.0_f32)] {
+            let mut arguments = vec!["trace", &geometry, "--rays", &rays, "--hits", &prefix, "--repeat", "1"];
+            arguments.extend(["--engine", engine, "--query", query]);
+            let output = wavelane(&arguments);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            let found = column(&folder.file("out.t.npy"), "<f4", 3).into_iter().map(f32::from_le_bytes);
+            assert_eq!(found.collect::<Vec<_>>(), [hit, f32::INFINITY, f32::INFINITY], "{engine} {query}");
+        }
+    }
+}
+
+#[test]
+fn no_file_of_a_command_takes_the_place_of_another() {
+    let folder = Folder::new();
+    let (geometry, rays) = (geometry(&folder), rays(&folder));
+    let scene = folder.write("scene.toml", STILL_LIFE).into_os_string().into_string().unwrap();
+    let at = |name: &str| folder.file(name).into_os_string().into_string().unwrap();
+    std::fs::create_dir(folder.file("rays")).unwrap();
+    let (sub, spheres) = (at("rays"), at("square/spheres.npy"));
+    let (alias, picture, recorded) = (at("rays/../scene.toml"), at("a.npy"), at("rays/primary.npy"));
+    let shadows = at("rays/shadow.npy");
+    std::fs::copy(&rays, folder.file("clash.t.npy")).unwrap();
+    let (clash, prefix) = (at("clash.t.npy"), at("clash"));
+    let cases: [&[&str]; 9] = [
+        &["trace", &scene, "--rays", &rays, "--json", &alias],
+        &["trace", &geometry, "--rays", &rays, "--json", &rays],
+        &["trace", &geometry, "--rays", &clash, "--hits", &prefix],
+        &["trace", &geometry, "--rays", &rays, "--json", &spheres],
+        &["render", &scene, "-o", &picture, "--json", &alias],
+        &["render", &geometry, "-o", &spheres, "--size", "8x8"],
+        &["render", &scene, "-o", &recorded, "--record-rays", &sub],
+        &["render", &scene, "-o", &picture, "--record-rays", &sub, "--json", &shadows],
+        &["bench", &geometry, "--size", "8x8", "--repeat", "1", "--json", &spheres],
+    ];
+    let before: Vec<_> = [&scene, &rays, &clash, &spheres].map(|path| std::fs::read(path).unwrap()).into();
+    for arguments in cases {
+        let output = wavelane(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert!(
+            stderr(&output).contains("another file of this command has this name"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    let after: Vec<_> = [&scene, &rays, &clash, &spheres].map(|path| std::fs::read(path).unwrap()).into();
+    assert!(before == after, "something was written over");
+}

@@ -65,6 +65,14 @@ pub enum BaselineError {
         /// Of the file.
         found: u32,
     },
+    /// No measurement comes to such a number.
+    #[error("it says {number} of {scene}, which no measurement comes to; make a new baseline")]
+    Number {
+        /// A median or a best.
+        number: f64,
+        /// The scene.
+        scene: String,
+    },
     /// It was measured in another way.
     #[error(
         "it was measured with {found} threads, and this run has {wanted}; use --threads {found}, or make a new baseline"
@@ -117,6 +125,14 @@ impl Baseline {
             return Err(BaselineError::Format { found });
         }
         let baseline: Self = serde_json::from_str(text)?;
+        for scene in &baseline.scenes {
+            let all = scene.simd.mrays_per_second.values().copied();
+            let all = all.chain([scene.seconds.build, scene.simd.frame_seconds]).flatten();
+            let numbers = all.flat_map(|measured| [measured.median, measured.best]);
+            if let Some(number) = numbers.into_iter().find(|number| !(1e-9..=1e9).contains(number)) {
+                return Err(BaselineError::Number { number, scene: scene.scene.clone() });
+            }
+        }
         if baseline.threads != threads {
             return Err(BaselineError::Threads { found: baseline.threads, wanted: threads });
         }
@@ -150,6 +166,16 @@ impl Baseline {
                 "{} with {} primitives is not in the baseline in this form",
                 scene.scene, scene.primitives
             )
+        }));
+        let is_run = |before: &BaselineScene| {
+            let is_it =
+                |now: &super::SceneBench| self.scene(now).is_some_and(|found| std::ptr::eq(found, before));
+            report.scenes.iter().any(is_it)
+        };
+        let left_out = self.scenes.iter().filter(|before| !is_run(before));
+        doubts.extend(left_out.map(|before| {
+            let BaselineScene { scene, primitives, .. } = before;
+            format!("{scene} with {primitives} primitives of the baseline was not measured in this run")
         }));
         doubts
     }
