@@ -88,7 +88,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         crate::whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_path_buf(), why })?;
     }
     output::check_json(arguments.json.as_deref(), &[&written[..], &read].concat())?;
-    arguments.engine.warn_of_unused_instructions(arguments.progress);
 
     let loaded = load::load_geometry(&arguments.geometry)?;
     output::warnings(&loaded);
@@ -103,6 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
 
+    arguments.engine.warn_of_unused_instructions(arguments.progress);
     let Traced { hits, seconds, build_seconds, threads } = traced(arguments, &loaded.scene, &rays)?;
     if let Some(prefix) = &arguments.hits {
         trace::write_hits(&hits, prefix).map_err(|(path, why)| Failure::Write { path, why })?;
