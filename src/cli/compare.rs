@@ -110,7 +110,7 @@ fn quoted(path: &Path) -> String {
 fn compare(arguments: &Arguments, scene: &Scene) -> Result<(Comparison, ComparedImages), Failure> {
     measured(arguments, "steps", |on_progress, stop| {
         let options = ComparisonOptions {
-            threads: threads(arguments),
+            threads: arguments.measuring.threads(),
             repeat: arguments.measuring.repeat as usize,
             rays: arguments.measuring.rays,
             on_progress,
@@ -124,17 +124,13 @@ fn measure_rungs(arguments: &Arguments, scene: &Scene, frame: RayCounts) -> Resu
     measured(arguments, "steps of rungs", |on_progress, stop| {
         let options = RungOptions {
             width: Width::BEST,
-            threads: threads(arguments),
+            threads: arguments.measuring.threads(),
             repeats: arguments.measuring.repeat as usize,
             on_progress: &|rungs::Progress { done, steps, .. }| on_progress(done as u64, steps as u64),
             stop,
         };
         Rungs::measure(scene, frame, arguments.measuring.rays, &options)
     })
-}
-
-fn threads(arguments: &Arguments) -> usize {
-    arguments.measuring.threads()
 }
 
 /// Measures with progress, until it is done or Ctrl-C comes. The measurement gets what to call with the steps done and those

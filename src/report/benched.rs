@@ -1,6 +1,6 @@
 //! The tables of a benchmark.
 
-use super::table::{NONE, Table, maybe, number};
+use super::table::{NONE, Table, maybe, median, number};
 use crate::measure::Spread;
 use crate::measure::bench::{BenchReport, EngineBench, GrowthPoint, PhaseSeconds};
 use crate::rays::RayKind;
@@ -20,10 +20,6 @@ pub(crate) fn benched(report: &BenchReport) -> String {
     text += &stages(report);
     text += &growth(report);
     text
-}
-
-fn median(spread: Option<Spread>) -> Option<f64> {
-    spread.map(|spread| spread.median)
 }
 
 /// A median and how far the repeats lie from it, in the median.

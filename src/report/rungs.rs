@@ -1,12 +1,12 @@
 //! The tables of what accuracy costs.
 
 use super::block::Block;
-use super::table::{NONE, Table, maybe, number};
+use super::table::{NONE, Table, maybe, median, number};
+use crate::measure::Percentiles;
 use crate::measure::rungs::Rungs;
 use crate::measure::rungs::kernels::{KernelRung, LeakRung};
 use crate::measure::rungs::min_weight::{MinWeightFrame, MinWeightRung};
 use crate::measure::rungs::samples::SamplesRung;
-use crate::measure::{Percentiles, Spread};
 use crate::rays::RayKind;
 
 /// Formulas, leaks, weak rays, samples; what a scene does not have is left out.
@@ -26,10 +26,6 @@ fn formula_name(name: &str, is_engines: bool) -> String {
 /// A limit as a fraction, which is how people choose it.
 pub(super) fn limit(min_weight: f32) -> String {
     if min_weight > 0.0 { format!("1/{}", 1.0 / min_weight) } else { "0".into() }
-}
-
-fn median(spread: Option<Spread>) -> Option<f64> {
-    spread.map(|spread| spread.median)
 }
 
 fn formulas(rungs: &Rungs) -> Vec<Block> {

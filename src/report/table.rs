@@ -1,6 +1,8 @@
 //! Tables: for a terminal, with columns as wide as what is in them; for a page, see [`html`](super::html). Words stand to the
 //! left, numbers to the right.
 
+use crate::measure::Spread;
+
 /// Rows of cells; the first row is the heading, and rows may end early.
 pub(crate) struct Table {
     pub(super) rows: Vec<Vec<String>>,
@@ -66,6 +68,11 @@ pub(crate) fn number(value: f64) -> String {
 /// The same, where there may be none.
 pub(crate) fn maybe(value: Option<f64>) -> String {
     value.map_or_else(|| NONE.into(), number)
+}
+
+/// The middle of repeats, where there are any.
+pub(super) fn median(spread: Option<Spread>) -> Option<f64> {
+    spread.map(|spread| spread.median)
 }
 
 #[cfg(test)]

@@ -37,3 +37,24 @@ pub struct Scene {
     /// Spheres, triangles and polygons.
     pub geometry: Geometry,
 }
+
+#[cfg(test)]
+impl Scene {
+    /// Geometry seen from the origin along −z, without lights, and everything else as it is by default: for tests.
+    pub(crate) fn unlit(geometry: Geometry, materials: Vec<Material>) -> Self {
+        Self {
+            image: ImageSettings::default(),
+            render: RenderSettings::default(),
+            camera: Camera {
+                eye: Vec3::ZERO,
+                target: Vec3::NEG_Z,
+                up: Vec3::Y,
+                projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
+            },
+            ambient: Rgb::ZERO,
+            lights: Vec::new(),
+            materials,
+            geometry,
+        }
+    }
+}

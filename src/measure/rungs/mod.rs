@@ -86,8 +86,7 @@ fn shrunk(scene: &Scene, most_pixels: u32) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Geometry, ImageSettings, Projection, RenderSettings, Rgb};
-    use glam::Vec3;
+    use crate::scene::Geometry;
 
     #[test]
     fn a_large_picture_shrinks_to_so_many_pixels_and_keeps_its_shape_and_a_small_one_stays() {
@@ -98,27 +97,10 @@ mod tests {
             ([100_000, 1], [8192, 1]),
         ];
         for ([width, height], expected) in sizes.into_iter().chain([([1, 100_000], [1, 8192])]) {
-            let mut scene = empty_scene();
+            let mut scene = Scene::unlit(Geometry::default(), Vec::new());
             (scene.image.width, scene.image.height) = (width, height);
             let image = shrunk(&scene, 1 << 13).image;
             assert_eq!([image.width, image.height], expected, "of {width} x {height}");
-        }
-    }
-
-    fn empty_scene() -> Scene {
-        Scene {
-            image: ImageSettings::default(),
-            render: RenderSettings::default(),
-            camera: Camera {
-                eye: Vec3::ZERO,
-                target: Vec3::NEG_Z,
-                up: Vec3::Y,
-                projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
-            },
-            ambient: Rgb::ZERO,
-            lights: Vec::new(),
-            materials: Vec::new(),
-            geometry: Geometry::default(),
         }
     }
 }

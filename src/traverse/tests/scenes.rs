@@ -1,9 +1,7 @@
 //! Scenes in which everything meets everything: a coarse grid makes flat boxes, ties and rays within faces common.
 
 use super::Random;
-use crate::scene::{
-    Camera, Geometry, ImageSettings, Material, MaterialId, Projection, RenderSettings, Rgb, Scene,
-};
+use crate::scene::{Geometry, Material, MaterialId, Scene};
 use glam::{DVec3, Vec3};
 
 /// Steps of the grid along an axis.
@@ -20,20 +18,7 @@ const MATERIALS: [MaterialId; 2] = [MaterialId(0), MaterialId(1)];
 
 pub(super) fn scene_of(geometry: Geometry) -> Scene {
     let shadowless = Material { casts_shadow: false, ..Material::grey() };
-    Scene {
-        image: ImageSettings::default(),
-        render: RenderSettings::default(),
-        camera: Camera {
-            eye: Vec3::ZERO,
-            target: Vec3::NEG_Z,
-            up: Vec3::Y,
-            projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
-        },
-        ambient: Rgb::ZERO,
-        lights: Vec::new(),
-        materials: vec![Material::grey(), shadowless],
-        geometry,
-    }
+    Scene::unlit(geometry, vec![Material::grey(), shadowless])
 }
 
 /// Spheres, triangles and polygons, some of them twice.

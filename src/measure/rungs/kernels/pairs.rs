@@ -177,10 +177,7 @@ mod tests {
     use super::super::{Formula, answers, sphere};
     use super::*;
     use crate::rays::{Departure, Start};
-    use crate::scene::PrimitiveId;
-    use crate::scene::{
-        Camera, Geometry, ImageSettings, Material, MaterialId, Projection, RenderSettings, Rgb, Scene,
-    };
+    use crate::scene::{Geometry, Material, MaterialId, PrimitiveId, Scene};
     use glam::Vec3;
 
     fn spheres() -> Geometry {
@@ -194,20 +191,7 @@ mod tests {
     }
 
     fn scene_of(geometry: Geometry) -> Scene {
-        Scene {
-            image: ImageSettings::default(),
-            render: RenderSettings::default(),
-            camera: Camera {
-                eye: Vec3::ZERO,
-                target: Vec3::NEG_Z,
-                up: Vec3::Y,
-                projection: Projection::PerspectiveAngle { vertical_degrees: 45.0 },
-            },
-            ambient: Rgb::ZERO,
-            lights: Vec::new(),
-            materials: vec![Material::grey()],
-            geometry,
-        }
+        Scene::unlit(geometry, vec![Material::grey()])
     }
 
     fn rays() -> RaySet {
