@@ -1,0 +1,22 @@
+//! Campaigns: so many rays that what goes wrong once in millions shows. Each runs at a size that a test run can afford;
+//! `WAVELANE_CAMPAIGN_RAYS` sets another, and the build should then be a release build:
+//!
+//! ```sh
+//! WAVELANE_CAMPAIGN_RAYS=1000000000 cargo test --release --test campaigns watertight -- --nocapture
+//! ```
+//!
+//! What such runs found is written down in docs/accuracy.md, with the bound that it proves: 0 of N says, with 95 %
+//! confidence, fewer than 3/N.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::cast_possible_truncation,
+    reason = "a test may end where it finds what it does not expect"
+)]
+
+/// How many rays a campaign traces: what the environment says, or else as many as given.
+#[allow(dead_code, reason = "campaigns come one by one")]
+fn ray_budget(usual: u64) -> u64 {
+    let Ok(number) = std::env::var("WAVELANE_CAMPAIGN_RAYS") else { return usual };
+    number.parse().unwrap_or_else(|_| panic!("WAVELANE_CAMPAIGN_RAYS is {number}, not a number of rays"))
+}
