@@ -38,6 +38,7 @@
 //! # }
 //! ```
 
+pub mod certified;
 pub mod cli;
 pub mod film;
 pub mod generate;
