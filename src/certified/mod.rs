@@ -30,7 +30,7 @@ mod triangle;
 mod verdict;
 
 pub use axis_box::{BoxMeeting, axis_box};
-pub use polygon::polygon;
+pub use polygon::{plane_t, polygon};
 pub use scene::{Closest, Crossing, Judge, Occlusion, Place};
 pub use sphere::{Limb, Side, SphereMeeting, sphere};
 pub use triangle::triangle;

@@ -20,6 +20,19 @@ pub fn polygon(line: &Line, corners: &[Vec3]) -> FaceMeeting {
     meet(line, &corners)
 }
 
+/// Where a line meets the plane of a polygon or a triangle, kept between its corners, wherever it passes the outline; none where it is
+/// parallel to the plane.
+#[must_use]
+pub fn plane_t(line: &Line, corners: &[Vec3]) -> Option<Enclosure> {
+    let corners: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
+    let [_, slope] = plane::<Exact>(line, &corners);
+    if slope.sign() == Some(Ordering::Equal) {
+        return None;
+    }
+    let bounded = bounded_t(line, &corners).filter(|t| !t.is_wide());
+    Some(bounded.unwrap_or_else(|| exact_t(line, &corners).enclosure()))
+}
+
 pub(super) fn meet(line: &Line, corners: &[DVec3]) -> FaceMeeting {
     let decided = by_either(seen::<Bounded>(line, corners), || seen::<Exact>(line, corners));
     let decided = decided.unwrap_or((Seen::EdgeOn, Method::Fractions));
