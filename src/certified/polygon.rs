@@ -3,7 +3,8 @@
 //! Corners seen from the line's origin are taken along the direction d into the plane in which d is fastest, times d_z, which
 //! spares the quotient: X = x·d_z − d_x·z, Y = y·d_z − d_y·z. An edge from p to q then turns round the line by the sign of
 //! det[d, p, q]·d_z, and the line passes exactly through it where that is 0 and it lies between the ends. What is neither on an edge
-//! nor at a corner is inside where the half-line Y = 0, X > 0 crosses the outline an odd number of times.
+//! nor at a corner is inside where a half-line from it along Y = 0 crosses the outline an odd number of times; which of the two, that
+//! of X > 0 or of X < 0, changes nothing, so the sign of d_z is left out.
 //!
 //! t is that of the plane through the first corner with Newell's normal, no nearer and no farther than the corners are, which is the
 //! contract for polygons whose corners are not quite in a plane; of a planar one it changes nothing.
@@ -77,8 +78,6 @@ fn seen<N: Number>(line: &Line, corners: &[DVec3]) -> Option<Seen> {
         return Some(Seen::EdgeOn);
     }
     let d: Vector<N> = vector(line.direction);
-    let z = fastest(line);
-    let looking_down = line.direction[z] < 0.0;
     let corners: Vec<Corner<N>> = corners.iter().map(|&corner| Corner::new(line, &d, corner)).collect();
     let mut inside = false;
     for (index, from) in corners.iter().enumerate() {
@@ -87,7 +86,6 @@ fn seen<N: Number>(line: &Line, corners: &[DVec3]) -> Option<Seen> {
             continue; // Above the half-line, or below it.
         }
         let turn = determinant(&d, &from.place, &to.place).sign()?;
-        let turn = if looking_down { turn.reverse() } else { turn };
         let [from_y, to_y] = [from.y?, to.y?];
         if turn == Ordering::Equal {
             let [from_x, to_x] = [from.x?, to.x?];
