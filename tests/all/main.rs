@@ -8,6 +8,7 @@
 
 mod agreement;
 mod bad_input;
+mod certified;
 mod command_line;
 mod example_scenes;
 mod floor;
