@@ -132,10 +132,10 @@ const FUSED_SLAB: Case = Case {
     },
 };
 
-/// A cube of 4 × 4 squares a face, at coordinates that take all digits: its corners are corners of boxes, its edges edges of
+/// A cube of 3 × 3 squares a face, at coordinates that take all digits: its corners are corners of boxes, its edges edges of
 /// them. From within each ray meets one face.
 fn corners_of_boxes() -> Vec<Vec<[f32; 3]>> {
-    cube_faces(4, |point| point / 3.0 + DVec3::new(0.1, -0.7, 1.3))
+    cube_faces(3, |point| point / 3.0 + DVec3::new(0.1, -0.7, 1.3))
 }
 
 fn rays_at_corners_of_boxes() -> Vec<Aimed> {

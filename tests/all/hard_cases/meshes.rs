@@ -125,7 +125,7 @@ fn check_lattice(n: u16, engines: &[Engine]) {
 #[test]
 fn case_16_integer_lattice() {
     check_lattice(65, &ENGINES);
-    check_lattice(1001, &[Engine::Wavefront(Width::BEST)]);
+    check_lattice(301, &[Engine::Wavefront(Width::BEST)]);
 }
 
 const FAR: DVec3 = DVec3::new(148_376.0, 1_234.0, -223_423.0);
@@ -140,7 +140,7 @@ const FAR_MESH: Case = Case {
     name: "mesh far from the origin",
     shapes: || Made::OfTriangles.shapes(&far_globe()),
     rays: || {
-        let targets = seams(&far_globe()).into_iter().step_by(509);
+        let targets = seams(&far_globe()).into_iter().step_by(1009);
         let origins = [[0.0; 3], [0.5, -0.25, 1.0], [-1.0, 0.0, -0.5]];
         let origins = origins.map(|by| rounded(FAR + DVec3::from(by)));
         let rays = targets.flat_map(|target| origins.map(|origin| aimed_at(origin, target).hits_something()));

@@ -27,6 +27,7 @@ mod coincident;
 mod meshes;
 mod no_rays;
 mod outline;
+mod platform;
 mod polygons;
 mod run;
 mod solids;

@@ -66,10 +66,10 @@ const FAR_BOX: Case = Case {
     rays: || rays_at_box(far),
 };
 
-/// 10⁻³ at 1000 has corners that are 6·10⁻⁵ off: what is left of the faces is not planar.
+/// 10⁻³ at 1000 has corners that are 3·10⁻⁵ off: what is left of the faces is not planar, or by chance it is.
 #[test]
 fn case_35_what_rounding_leaves_nothing_of_is_refused() {
-    let lost = cube_faces(1, |point| 1e-3 * turned(point) + DVec3::new(1000.0, -1000.0, 1000.0));
+    let lost = cube_faces(1, |point| 1e-3 * turned(point) + DVec3::new(1000.3, -999.7, 1000.1));
     let tables: String =
         lost.iter().map(|face| format!("[[polygon]]\nvertices = {face:?}\nmaterial = \"m\"\n")).collect();
     refused(&tables, "the polygon is not planar");
@@ -173,19 +173,33 @@ fn case_38_dirty_input() {
         &[[0, 0], [3, 2], [0, 0], [8, 0], [8, 8], [4, 3], [0, 8]],
         &[[0, 0], [8, 0], [12, 5], [8, 0], [8, 8], [4, 3], [0, 8]],
     ];
-    // Planes that f32 holds to the bit.
-    let planes: [fn(f32, f32) -> [f32; 3]; 3] =
-        [|x, y| [x, y, 1.0], |x, y| [x, 0.5 * x - 0.25 * y, y], |x, y| [x, y, 4.0 - y]];
-    for plane in planes {
+    // Planes that f32 holds to the bit, and a way to look at them that leaves their numbers as they are.
+    type Plane = (fn(f32, f32) -> [f32; 3], [f32; 3]);
+    let planes: [Plane; 3] = [
+        (|x, y| [x, y, 1.0], [0.0, 0.0, -4.0]),
+        (|x, y| [x, 0.5 * x - 0.25 * y, y], [0.0, 4.0, 0.0]),
+        (|x, y| [x, y, 4.0 - y], [0.0, 0.0, 8.0]),
+    ];
+    for (plane, straight) in planes {
         let of = |corners: &[[i16; 2]]| {
             scene(&[Polygon(
                 corners.iter().map(|corner| corner.map(f32::from)).map(|[x, y]| plane(x, y)).collect(),
             )])
         };
-        let points = (-2..=36_i8).flat_map(|i| (-2..=36_i8).map(move |j| [i, j].map(|k| f32::from(k) / 4.0)));
-        let rays: Vec<Aimed> = points
-            .flat_map(|[x, y]| [[-3.0, 2.0, 11.0], [4.1, -9.0, 5.3]].map(|origin| (origin, plane(x, y))))
-            .map(|(origin, point)| aimed_at(origin, DVec3::from(point.map(f64::from))))
+        let quarters = (-8..=40_i16).flat_map(|x| (-8..=40_i16).map(move |y| [x, y]));
+        let clean_in_quarters = clean.map(|corner| corner.map(|whole| 4 * whole));
+        let rays: Vec<Aimed> = quarters
+            .flat_map(|quarters| {
+                let [x, y] = quarters.map(|k| f32::from(k) / 4.0);
+                let point = plane(x, y);
+                let start = [0, 1, 2].map(|axis| point[axis] - straight[axis]);
+                // Aslant, corners along an edge are rounded each for itself, so what is on that edge is free to be inside.
+                let aslant = [[-3.0, 2.0, 11.0], [4.1, -9.0, 5.3]]
+                    .map(|origin| aimed_at(origin, DVec3::from(point.map(f64::from))))
+                    .into_iter()
+                    .filter(move |_| !is_on_edge(&clean_in_quarters, quarters));
+                [ray(start, straight)].into_iter().chain(aslant).collect::<Vec<_>>()
+            })
             .collect();
         let clean = of(&clean);
         for (index, dirty) in dirty.iter().enumerate() {
