@@ -52,8 +52,9 @@ pub(super) enum Wanted {
     Miss,
     /// That all engines and queries agree with themselves, and the count of faces.
     Anything,
-    /// A hit as given, or a miss: either is right.
+    /// A hit as given, or a miss: in f32 either is right. `truly` is which it is, and what the reference finds.
     Free {
+        truly: bool,
         id: u32,
         t: f64,
         within: Within,
@@ -71,6 +72,8 @@ pub(super) enum Within {
     Roundings(f64),
     /// As it stands.
     Absolute(f64),
+    /// From this t to that.
+    Between(f64, f64),
 }
 
 /// What the reference is held to: it rounds once, to f32, and a little in f64.
@@ -131,8 +134,12 @@ impl Aimed {
         Self { wanted: Wanted::Anything, ..self }
     }
 
+    pub(super) fn may_miss(self, id: u32, t: f64, within: Within, why: &'static str) -> Self {
+        Self { wanted: Wanted::Free { truly: true, id, t, within, why }, ..self }
+    }
+
     pub(super) fn may_hit(self, id: u32, t: f64, within: Within, why: &'static str) -> Self {
-        Self { wanted: Wanted::Free { id, t, within, why }, ..self }
+        Self { wanted: Wanted::Free { truly: false, id, t, within, why }, ..self }
     }
 
     pub(super) fn on_faces(self, faces: Faces) -> Self {

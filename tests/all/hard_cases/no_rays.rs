@@ -1,12 +1,11 @@
 //! What is no ray: cases 33 and 34.
 
-use super::case::{Aimed, Case, Shape, Within, ray};
+use super::case::{Aimed, Case, Shape, Within, ray, scene};
 use super::run::{ENGINES, Engines};
 use super::solids::{Made, cube_faces, turned};
 use crate::support::{Folder, npy_floats, stderr, wavelane};
 use Shape::Sphere;
 use Within::{Absolute, Ulps};
-use std::time::{Duration, Instant};
 use wavelane::lanes::Width;
 use wavelane::prepare::Prepared;
 use wavelane::rays::RaySet;
@@ -57,31 +56,29 @@ const NO_LENGTH: Case = Case {
     },
 };
 
-/// Rays that are none take no longer than rays, at the median of some passes; twice as long is allowed for a busy machine.
+/// Rays that are none take no longer than rays. The best of many passes is compared, and three times as long allowed, since
+/// the machine may be busy; to try all of these squares takes far longer.
 #[test]
 fn case_33_costs_no_time() {
-    let scene = super::case::scene(&ball_in_cube());
+    let squares = Made::OfPolygons.shapes(&cube_faces(24, |point| 4.0 * turned(point)));
+    let scene = scene(&[ball_in_cube(), squares].concat());
     let prepared = Prepared::new(&scene).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let good = ray([0.0; 3], [0.0, 0.0, -1.0]).row;
-    let seconds = |row: &dyn Fn(usize) -> [f32; 8]| {
-        let rays = RaySet { rows: (0..1 << 16).map(row).collect(), ..RaySet::default() };
+    let seconds = |row: [f32; 8]| {
+        let rays = RaySet { rows: vec![row; 1 << 14], ..RaySet::default() };
         let columns = RayColumns::new(&prepared, &rays);
-        let mut times: Vec<f64> =
-            (0..9).map(|_| Run::new(&prepared, &columns, Query::Closest).pass(Width::BEST, &pool)).collect();
-        times.sort_by(f64::total_cmp);
-        times[4]
+        let mut run = Run::new(&prepared, &columns, Query::Closest);
+        (0..25).map(|_| run.pass(Width::BEST, &pool)).fold(f64::INFINITY, f64::min)
     };
-    let of_good = seconds(&|_| good);
+    let of_good = seconds(good);
     for (column, value) in (0..8).flat_map(|column| [f32::NAN, f32::INFINITY].map(|value| (column, value))) {
-        let of_bad = seconds(&|_| {
-            let mut row = good;
-            row[column] = value;
-            row
-        });
+        let mut row = good;
+        row[column] = value;
+        let of_bad = seconds(row);
         assert!(
-            of_bad < 2.0 * of_good,
-            "column {column} = {value}: {of_bad:.2e} s, {of_good:.2e} s of good rays"
+            of_bad < 3.0 * of_good,
+            "case 33, column {column} = {value}: {of_bad:.2e} s, good rays {of_good:.2e} s"
         );
     }
 }
@@ -98,7 +95,6 @@ fn case_33_by_the_command() {
         [scene, folder.file("out")].map(|path| path.into_os_string().into_string().unwrap());
     let rays: Vec<[f32; 8]> = spoilt().iter().map(|ray| ray.row).collect();
     let path = folder.write("rays.npy", npy_floats(&rays)).into_os_string().into_string().unwrap();
-    let begin = Instant::now();
     for (engine, query) in ["simd", "scalar", "reference"]
         .into_iter()
         .flat_map(|engine| ["closest", "any"].map(|query| (engine, query)))
@@ -120,13 +116,12 @@ fn case_33_by_the_command() {
         let hits: Vec<usize> = (0..t.len()).filter(|&row| t[row] != f32::INFINITY).collect();
         assert_eq!(hits, [15, 30, 32], "{engine} {query}: {t:?}");
     }
-    assert!(begin.elapsed() < Duration::from_secs(60), "six short runs take seconds");
 }
 
 /// A scene that holds nothing is missed too.
 #[test]
 fn case_33_in_an_empty_scene() {
-    let empty = super::case::scene(&[]);
+    let empty = scene(&[]);
     let engines = Engines::new(&empty, 1);
     let rays = RaySet { rows: spoilt().iter().map(|ray| ray.row).collect(), ..RaySet::default() };
     for (engine, query) in

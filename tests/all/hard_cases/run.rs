@@ -212,17 +212,23 @@ fn judge(ray: &Aimed, shapes: &[Shape], engine: Engine, found: Answer) -> Option
         return Some("both queries to agree".to_owned());
     }
     let is_near = |t: f64, within: Within| {
-        let (true_t, off) = (t as f32, (f64::from(found.t) - t).abs());
+        let true_t = t as f32;
         let ulp = f64::from(true_t) - f64::from(true_t.next_down());
-        let bound = match (engine, within) {
-            (Engine::Reference, Within::Ulps(_) | Within::Roundings(_)) => REFERENCE_ULPS * ulp,
-            (_, Within::Ulps(most)) => most * ulp,
-            (_, Within::Roundings(most)) => most * shapes[found.id as usize].t_per_rounding(ray),
-            (_, Within::Absolute(most)) => most,
+        let (found_t, off) = (f64::from(found.t), (f64::from(found.t) - t).abs());
+        let [low, high] = match (engine, within) {
+            (_, Within::Absolute(most)) => [t - most, t + most],
+            (Engine::Reference, _) => [t - REFERENCE_ULPS * ulp, t + REFERENCE_ULPS * ulp],
+            (_, Within::Ulps(most)) => [t - most * ulp, t + most * ulp],
+            (_, Within::Roundings(most)) => {
+                let bound = most * shapes[found.id as usize].t_per_rounding(ray);
+                [t - bound, t + bound]
+            }
+            (_, Within::Between(low, high)) => [low, high],
         };
-        (off <= bound)
+        let is_within = found_t >= low && found_t <= high;
+        is_within
             .then_some(())
-            .ok_or(format!("t = {t:?} ± {bound:.3e}, off by {off:.3e}, {:.1} ulp", off / ulp))
+            .ok_or_else(|| format!("t = {t:?}, {low:?} to {high:?}; off by {off:.3e}, {:.1} ulp", off / ulp))
     };
     let is_hit = found.id != Hits::MISS;
     match ray.wanted {
@@ -233,6 +239,9 @@ fn judge(ray: &Aimed, shapes: &[Shape], engine: Engine, found: Answer) -> Option
         Wanted::SomethingAt { t, within } => is_near(t, within).err(),
         Wanted::Hit { id, t, .. } if found.id != id => Some(format!("{id} at t = {t:?}")),
         Wanted::Hit { t, within, .. } => is_near(t, within).err(),
+        Wanted::Free { truly, .. } if engine == Engine::Reference && is_hit != truly => {
+            Some(format!("in f64 {}", if truly { "a hit" } else { "a miss" }))
+        }
         Wanted::Free { .. } if !is_hit => None,
         Wanted::Free { id, t, why, .. } if found.id != id => {
             Some(format!("a miss or {id} at t = {t:?}: {why}"))

@@ -4,7 +4,7 @@ use super::case::{Aimed, Case, Faces, Shape, Within, plane_t, ray};
 use super::run::warned;
 use super::solids::{Made, cube_faces};
 use Shape::Triangle;
-use Within::{Absolute, Roundings, Ulps};
+use Within::{Absolute, Between, Roundings, Ulps};
 use glam::DVec3;
 
 hard_cases! {
@@ -116,60 +116,94 @@ fn needle() -> Vec<Shape> {
 
 const WITHIN_ROUNDING: &str = "it passes the edges by less than 6uL";
 
-/// Across the needle all corners are 500 away, to 3·10⁻⁵.
+/// Across the needle all corners are 500 away, to 10⁻⁵. Whether the ray passes inside and where were found in fractions.
 const NEEDLE_ACROSS: Case = Case {
     number: 20,
     name: "needle, across",
     shapes: needle,
     rays: || {
-        let direction = [-0.036_151_68, 0.907_748_16, 0.417_954_9];
-        let origins = [
-            [145.375_84, -498.8241, 1.785_062_2],
-            [146.915_85, -498.7691, 1.798_812_9],
-            [147.755_84, -498.739_07, 1.806_315_7],
+        let hits = [
+            (
+                [149.041_24, -498.6929, 1.817_740_4],
+                [-0.036_151_655, 0.907_747_6, 0.417_954_98],
+                499.999_998_790_045_15,
+            ),
+            (
+                [147.730_18, -498.74, 1.806_273_8],
+                [-0.036_151_666, 0.907_748_16, 0.417_954_5],
+                500.000_000_808_834,
+            ),
+            (
+                [146.834_44, -498.7724, 1.797_887_7],
+                [-0.036_151_707, 0.907_749, 0.417_955_28],
+                499.999_995_165_919_34,
+            ),
+            (
+                [147.4696, -498.7494, 1.803_602_7],
+                [-0.036_151_66, 0.907_748_34, 0.417_955_2],
+                499.999_999_699_947_33,
+            ),
         ];
-        let shifted = origins.into_iter().flat_map(|[x, y, z]| {
-            (-20..=20_i8)
-                .map(move |step| ray([x, y, z + f32::from(step) / f32::from(1_u16 << 15)], direction))
-        });
-        shifted.map(|ray| ray.may_hit(0, 500.0, Absolute(1e-3), WITHIN_ROUNDING)).collect()
+        let misses = [
+            ([146.683_47, -498.777_62, 1.796_614_5], [-0.036_151_69, 0.907_748_64, 0.417_955_13]),
+            ([147.054_98, -498.764_34, 1.799_886_1], [-0.036_151_71, 0.907_748_64, 0.417_955_22]),
+        ];
+        let near = Absolute(1e-3);
+        let hits =
+            hits.map(|(origin, direction, t)| ray(origin, direction).may_miss(0, t, near, WITHIN_ROUNDING));
+        let misses =
+            misses.map(|(origin, direction)| ray(origin, direction).may_hit(0, 500.0, near, WITHIN_ROUNDING));
+        hits.into_iter().chain(misses).collect()
     },
 };
 
-/// Along it no f32 can tell where on the needle it is met: t stays between those of its corners, 11.2 apart.
+/// Along it no f32 can tell where on the needle it is met: t stays between those of its corners, 11.2 apart, and no bound is
+/// better.
 const NEEDLE_ALONG: Case = Case {
     number: 20,
     name: "needle, along",
     shapes: needle,
     rays: || {
-        let direction = [0.999_340_8, 0.031_970_162, 0.017_201_275];
-        // The middle of the corners' t: 492.996 and 504.203, 491.455 and 502.662, 490.614 and 501.821.
-        let origins = [
-            ([-372.3704, -60.935_078, 202.161_87], 498.5995),
-            ([-370.830_38, -60.880_077, 202.175_61], 497.0585),
-            ([-369.9904, -60.850_075, 202.183_12], 496.2175),
+        let hits = [
+            (
+                ([-371.063_02, -60.888_38, 202.173_54], [0.999_341_3, 0.031_970_173, 0.017_201_273]),
+                (500.000_527_534_208_84, Between(491.687_08, 502.894_21)),
+            ),
+            (
+                ([-370.691, -60.875_103, 202.176_86], [0.999_340_24, 0.031_970_15, 0.017_201_276]),
+                (499.999_252_281_594_71, Between(491.315_36, 502.522_5)),
+            ),
+            (
+                ([-374.473_63, -61.010_178, 202.143_08], [0.999_341_1, 0.031_970_143, 0.017_201_28]),
+                (500.000_235_043_555_02, Between(495.099_98, 506.307_11)),
+            ),
         ];
-        let rays =
-            origins.map(|(origin, t)| ray(origin, direction).may_hit(0, t, Absolute(5.605), WITHIN_ROUNDING));
-        rays.into()
+        let missed = ray([-369.850_65, -60.845_097, 202.184_37], [0.999_340_4, 0.031_970_177, 0.017_201_265]);
+        let rays = hits.map(|((origin, direction), (t, corners))| {
+            ray(origin, direction).may_miss(0, t, corners, WITHIN_ROUNDING)
+        });
+        let missed = missed.may_hit(0, 496.1, Between(490.4, 501.8), WITHIN_ROUNDING);
+        rays.into_iter().chain([missed]).collect()
     },
 };
 
-/// Legs of 10⁻¹⁰ to 10⁻¹² beside a triangle of 1: doubled areas down to 10⁻²⁴.
+const SMALL_LEGS: [f32; 6] = [1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
+
+/// Legs of 10⁻¹⁰ to 10⁻¹⁵, which is 2⁻⁵⁰, beside a triangle of 1: doubled areas down to 10⁻³⁰, and times t down to 10⁻⁴⁵.
 const UNDERFLOW: Case = Case {
     number: 22,
     name: "underflow, beside a unit",
     shapes: || {
-        let small = [1e-10, 1e-11, 1e-12_f32].map(|leg| {
+        let small = SMALL_LEGS.map(|leg| {
             // Each a little above the one before, and tilted: z falls by as much as y grows.
             Triangle([[0.0, 0.0, leg], [leg, 0.0, leg], [0.0, leg, 0.0]])
         });
         small.into_iter().chain([unit_triangle_elsewhere()]).collect()
     },
     rays: || {
-        let rays = [1e-10, 1e-11, 1e-12_f32].into_iter().zip(0..).flat_map(|(leg, id)| {
+        let rays = SMALL_LEGS.into_iter().zip(0..).flat_map(|(leg, id)| {
             let down = |z: f32| ray([leg / 4.0, leg / 4.0, z], [0.0, 0.0, -1.0]);
-            // Down to z = ¾ of a leg. From 1 away all three are at one t, as far as 32 bits tell.
+            // Down to z = ¾ of a leg. From 1 away all of them are at one t, as far as 32 bits tell.
             [down(4.0 * leg).hits(id, 3.25 * f64::from(leg), Ulps(16.0)), down(1.0).hits(0, 1.0, Ulps(16.0))]
         });
         rays.collect()
