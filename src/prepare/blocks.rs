@@ -16,7 +16,8 @@ pub(crate) const BLOCK: usize = 4;
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleBlock {
     pub(crate) vertices: [[[f32; BLOCK]; 3]; 3],
-    /// Length of the longest edge, at least [`LEAST_SIZE`].
+    /// Length of the longest edge, at least [`LEAST_SIZE`]; not a number where there is no triangle, so that no ray comes near
+    /// to its edges.
     pub(crate) size: [f32; BLOCK],
     /// Twice the area, and for needles more: what the error of t is in proportion to.
     pub(crate) error_area: [f32; BLOCK],
@@ -80,7 +81,7 @@ impl TriangleBlock {
     /// Triangles of no area, which nothing hits.
     pub(super) const EMPTY: Self = Self {
         vertices: [[[0.0; BLOCK]; 3]; 3],
-        size: [0.0; BLOCK],
+        size: [f32::NAN; BLOCK],
         error_area: [0.0; BLOCK],
         ids: [u32::MAX; BLOCK],
     };

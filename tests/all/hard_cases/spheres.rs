@@ -42,7 +42,7 @@ const FAR_SPHERE: Case = Case {
             // From the middle of the chord on there is its far end.
             [towards.clone().hits(0, t(-1.0), Ulps(2.0)), towards.beyond(distance).hits(0, t(1.0), Ulps(2.0))]
         };
-        [100.0, 1e3, 2e3, 4100.0, 8e3, 65536.0, 1e6].into_iter().flat_map(far).collect()
+        [100.0, 1e3, 2e3, 3e3, 4099.0, 4100.0, 8e3, 65536.0, 1e6].into_iter().flat_map(far).collect()
     },
 };
 
