@@ -14,6 +14,7 @@ mod example_scenes;
 mod floor;
 mod folder;
 mod formats;
+mod hard_cases;
 mod measuring;
 mod model;
 mod pixel_tree;
