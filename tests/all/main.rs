@@ -13,6 +13,7 @@ mod example_scenes;
 mod floor;
 mod folder;
 mod formats;
+mod hard_cases_light;
 mod measuring;
 mod model;
 mod pixel_tree;
