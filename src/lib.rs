@@ -38,6 +38,8 @@
 //! # }
 //! ```
 
+#[cfg(test)]
+mod boundary_cases;
 pub mod cli;
 pub mod film;
 pub mod generate;

@@ -4,14 +4,14 @@
 //! Each is asked of the reference and of the wavefront engine at every width. Formulas alone are tested beside them, in
 //! `src/wavefront/optics.rs` and `src/reference/optics.rs`.
 
+mod bounces;
 mod contact;
 mod corners;
 mod lamps;
-
+mod optics;
 mod scale;
 mod secondary;
-
-
+mod solids;
 
 use glam::{DVec3, Quat, Vec3};
 use std::sync::atomic::AtomicBool;
