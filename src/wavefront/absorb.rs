@@ -2,16 +2,20 @@
 
 use super::column::widen_vector;
 use super::elementary::exp;
-use super::queue::{AttenuationQueue, RayQueue, SurfaceQueue};
+use super::queue::{AttenuationQueue, SurfaceQueue};
 use super::statistics::Work;
+use super::surface::Batch;
 use crate::lanes::{Double, Vector};
 use crate::prepare::Prepared;
 use crate::scene::Rgb;
 
 /// Writes an attenuation for each surface, 1 where the ray came from outside; returns how many exponentials it took.
+///
+/// The length of a way is the difference of its ends, and both with what their rounding to f32 left out: a short way far from
+/// the origin would else be no more than rounding.
 pub(super) fn absorb<D: Double>(
     prepared: &Prepared<'_>,
-    rays: &RayQueue,
+    batch: &Batch<'_>,
     surfaces: &SurfaceQueue,
     attenuations: &mut AttenuationQueue,
     work: &mut Work,
@@ -38,12 +42,16 @@ pub(super) fn absorb<D: Double>(
             let ray = surfaces.ray[row] as usize;
             for channel in 0..3 {
                 absorption[channel][lane] = coefficients[channel];
-                origin[channel][lane] = rays.origin[channel][ray];
+            }
+            for axis in 0..3 {
+                let low = batch.departures.map_or(0.0, |departures| departures.origin_low[axis][ray]);
+                origin[axis][lane] = f64::from(batch.rays.origin[axis][ray]) + f64::from(low);
             }
         }
         work.lanes.add(D::WIDTH, count);
-        let [x, y, z] = origin.map(|column| D::widen(&column));
-        let position: Vector<D> = widen_vector(&surfaces.position, first);
+        let [x, y, z] = origin.map(|column| D::load(&column));
+        let rounded: Vector<D> = widen_vector(&surfaces.position, first);
+        let position = rounded + widen_vector(&surfaces.position_low, first);
         let length = (position - Vector::new(x, y, z)).length() * world_from_scene;
         for (column, absorption) in attenuations.attenuation.iter_mut().zip(absorption) {
             if absorption == [0.0; 8] {

@@ -247,7 +247,7 @@ impl<'a> Worker<'a> {
         if prepared.plan.absorption {
             let exponentials = self.statistics.timed(depth, Stage::Absorb, |work| {
                 work.rows += scratch.surfaces.len() as u64;
-                absorb::<D>(prepared, &level.rays, &scratch.surfaces, &mut level.attenuations, work)
+                absorb::<D>(prepared, &batch, &scratch.surfaces, &mut level.attenuations, work)
             });
             self.statistics.exponentials += exponentials;
         }

@@ -59,7 +59,7 @@ fn case_42_a_normal_longer_than_1() {
                 assert!((refract.weight[0] - 0.96).abs() <= 4.0 * rounding_of(engine), "{engine:?}: {ray:?}");
                 assert_eq!(ray.colour, [1.0; 3], "{engine:?}");
                 let normal = DVec3::from(ray.hit.as_ref().unwrap().geometric_normal);
-                too_long += usize::from(-normal.dot(ray.direction.into()) > 1.0 + U);
+                too_long += usize::from(-normal.dot(ray.direction.into()) > 1.0);
                 let straight = DVec3::from(refract.direction) - DVec3::from(ray.direction);
                 assert!(straight.length() <= 4.0 * U, "{engine:?}: {ray:?}");
             }
@@ -127,9 +127,12 @@ fn case_44_snell_at_grazing_and_no_loss_at_any_angle() {
                         };
                         let at = format!("ior {ior}, above {above}, {cosine}, {place:?}, {engine:?}: {ray:?}");
                         let hit = ray.hit.as_ref().unwrap();
-                        let reflect = ray.reflect.as_ref().expect("a mirrored ray");
-                        let mut sum = reflect.weight[0];
-                        assert!((length(reflect.direction) - 1.0).abs() <= 4.0 * rounding, "{at}");
+                        let mut sum = 0.0;
+                        // Where nothing is reflected, head-on at index 1, there is no such ray.
+                        if let Some(reflect) = &ray.reflect {
+                            sum += reflect.weight[0];
+                            assert!((length(reflect.direction) - 1.0).abs() <= 4.0 * rounding, "{at}");
+                        }
                         if let Some(refract) = &ray.refract {
                             passed += 1;
                             sum += refract.weight[0];
@@ -143,7 +146,7 @@ fn case_44_snell_at_grazing_and_no_loss_at_any_angle() {
                             assert!(t.dot(normal) <= 0.0, "{at}");
                         } else {
                             total += 1;
-                            assert_eq!(reflect.weight, [1.0; 3], "{at}");
+                            assert_eq!(sum, 1.0, "{at}");
                         }
                         assert!((sum - 1.0).abs() <= 4.0 * rounding, "{sum}: {at}");
                         assert!((ray.colour[0] - 1.0).abs() <= 4.0 * rounding, "{at}");
