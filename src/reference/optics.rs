@@ -223,7 +223,10 @@ mod tests {
                 let (into, true_into) = (reflectance(degrees, ior, true), fresnel(cos, f64::from(ior)));
                 // The same two rays, the other way.
                 let inside = (degrees.to_radians().sin() / f64::from(ior)).asin().to_degrees();
-                assert!((reflectance(inside, ior, false) - into).abs() < 1e-9, "{degrees}° and back, ior {ior}");
+                assert!(
+                    (reflectance(inside, ior, false) - into).abs() < 1e-9,
+                    "{degrees}° and back, ior {ior}"
+                );
                 (into - true_into).abs()
             };
             let worst = (0..=900).map(|step| off(f64::from(step) / 10.0)).fold(0.0, f64::max);

@@ -93,7 +93,14 @@ mod tests {
         let boundary = Boundary::new(direction, normal, ior, entering);
         let reflectance = boundary.reflectance(ior, entering);
         let refracted = boundary.refracted(direction, normal);
-        let lanes = [boundary.cos_incident, boundary.cos_refracted, reflectance, refracted.x, refracted.y, refracted.z];
+        let lanes = [
+            boundary.cos_incident,
+            boundary.cos_refracted,
+            reflectance,
+            refracted.x,
+            refracted.y,
+            refracted.z,
+        ];
         let lanes = lanes.map(|lanes| {
             let mut column = [0.0; 8];
             lanes.store(&mut column);
@@ -127,9 +134,8 @@ mod tests {
     #[test]
     fn case_43_the_neighbours_of_the_critical_angle() {
         let around = boundary_cases::around_critical();
-        let question = |&(cos, _): &(f64, f64)| {
-            (DVec3::new((1.0 - cos * cos).sqrt(), 0.0, -cos), DVec3::Z, 1.5, false)
-        };
+        let question =
+            |&(cos, _): &(f64, f64)| (DVec3::new((1.0 - cos * cos).sqrt(), 0.0, -cos), DVec3::Z, 1.5, false);
         let questions: Vec<Question> = around.iter().map(question).collect();
         for width in Width::ALL {
             let mut last = 1.0;

@@ -16,7 +16,8 @@ enum Caster {
     Triangle,
 }
 
-const TRIANGLE: [Vec3; 3] = [Vec3::new(-1.1, -0.9, 0.0), Vec3::new(1.2, -0.7, 0.0), Vec3::new(-0.1, 1.15, 0.0)];
+const TRIANGLE: [Vec3; 3] =
+    [Vec3::new(-1.1, -0.9, 0.0), Vec3::new(1.2, -0.7, 0.0), Vec3::new(-0.1, 1.15, 0.0)];
 
 const HALF_SIDE: f32 = 4.0;
 
@@ -53,14 +54,16 @@ impl Contact {
             _ => place.face(kind, corners, material),
         };
         let side = HALF_SIDE;
-        let ground = [[-side, -side], [side, -side], [side, side], [-side, side]].map(|[x, y]| Vec3::new(x, y, 0.0));
+        let ground =
+            [[-side, -side], [side, -side], [side, side], [-side, side]].map(|[x, y]| Vec3::new(x, y, 0.0));
         let shapes = match self.caster {
             Caster::Box { kind } => {
                 let corner = |index: usize| {
                     let side = |bit: usize| if index >> bit & 1 == 1 { 1.0 } else { -1.0 };
                     Vec3::new(side(0), side(1), if index & 4 == 4 { gap + 0.5 } else { gap })
                 };
-                let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+                let faces =
+                    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
                 let faces = faces.map(|indices| face(kind, &indices.map(corner), "clear"));
                 face(kind, &ground, "ground") + &faces.concat()
             }
@@ -137,7 +140,9 @@ impl Contact {
             let image = render_with(&scene, engine).image;
             let (mut decided, mut wrong) = (0, Vec::new());
             dark = 0;
-            for (row, column) in (0..Self::SIZE).flat_map(|row| (0..Self::SIZE).map(move |column| (row, column))) {
+            for (row, column) in
+                (0..Self::SIZE).flat_map(|row| (0..Self::SIZE).map(move |column| (row, column)))
+            {
                 let at = |index: u32| (f64::from(index) + 0.5) * 4.0 / f64::from(Self::SIZE) - 2.0;
                 let Some(is_dark) = self.is_dark(at(column), -at(row)) else { continue };
                 let found = image.pixels[image.index(column, row)];

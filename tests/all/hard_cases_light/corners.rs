@@ -47,7 +47,8 @@ impl Corner {
             self.place.face(self.kind, &corners, "mirror")
         };
         let angle = self.radians();
-        let light = |radians| format!("[[light]]\nposition = {}\n", self.place.text(Self::point(0.02, 0.4, radians)));
+        let light =
+            |radians| format!("[[light]]\nposition = {}\n", self.place.text(Self::point(0.02, 0.4, radians)));
         scene(&format!(
             "[image]\nsize = [1, 1]\n[render]\nmax_depth = 3\n[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\n\
              fov = 1\n{}{}{}[material.mirror]\ndiffuse = 1\nmirror = 1\n{}{}",
@@ -62,7 +63,8 @@ impl Corner {
     /// Both faces as the scene has them.
     fn faces(scene: &Scene) -> [Face; 2] {
         let of = |corners: Vec<u32>| {
-            let [a, b, c] = [0, 1, 2].map(|index| scene.geometry.vertices[corners[index] as usize].as_dvec3());
+            let [a, b, c] =
+                [0, 1, 2].map(|index| scene.geometry.vertices[corners[index] as usize].as_dvec3());
             let edge = (b - a).normalize();
             let away = ((c - a) - (c - a).dot(edge) * edge).normalize();
             Face { middle: a.midpoint(b), edge, away }

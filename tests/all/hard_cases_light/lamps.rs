@@ -74,7 +74,8 @@ fn case_53_wall_just_before_the_lamp() {
                     let before = roundings * U as f32 * distance;
                     let place = Place { turned, offset: offset * distance };
                     // A ball is met head-on.
-                    let angles = if matches!(wall, Wall::Face(_)) { &[0.0, 45.0, 75.0][..] } else { &[0.0, 45.0] };
+                    let angles =
+                        if matches!(wall, Wall::Face(_)) { &[0.0, 45.0, 75.0][..] } else { &[0.0, 45.0] };
                     for &degrees in angles {
                         let lamp = Lamp { wall, place, distance, degrees, before };
                         lamp.is_lit_everywhere_or_nowhere(false);

@@ -116,7 +116,8 @@ fn case_44_snell_at_grazing_and_no_loss_at_any_angle() {
             for above in [true, false] {
                 for exponent in 0..=24 {
                     // 1, and from about 1 down to 10⁻⁶ by factors of 10^¼.
-                    let cosine = if exponent == 0 { 1.0 } else { 0.98 * 10.0_f64.powf(-f64::from(exponent) / 4.0) };
+                    let cosine =
+                        if exponent == 0 { 1.0 } else { 0.98 * 10.0_f64.powf(-f64::from(exponent) / 4.0) };
                     for engine in engines() {
                         let rounding = rounding_of(engine);
                         let ray = meeting(&scene, engine, place, cosine, above);
@@ -125,7 +126,8 @@ fn case_44_snell_at_grazing_and_no_loss_at_any_angle() {
                             assert!(place.turned && cosine < 16.0 * U, "{place:?} is missed at {cosine}");
                             continue;
                         };
-                        let at = format!("ior {ior}, above {above}, {cosine}, {place:?}, {engine:?}: {ray:?}");
+                        let at =
+                            format!("ior {ior}, above {above}, {cosine}, {place:?}, {engine:?}: {ray:?}");
                         let hit = ray.hit.as_ref().unwrap();
                         let mut sum = 0.0;
                         // Where nothing is reflected, head-on at index 1, there is no such ray.

