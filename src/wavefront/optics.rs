@@ -110,6 +110,7 @@ mod tests {
         let answer = |lane: usize| {
             let [cos_incident, cos_refracted, reflectance, x, y, z] = lanes.map(|column| column[lane]);
             let is_total = total >> lane & 1 == 1;
+            assert!(!is_total || cos_refracted == 0.0, "{cos_refracted} under total internal reflection");
             Answer {
                 cos_incident,
                 shares: [reflectance, 1.0 - reflectance],

@@ -249,6 +249,36 @@ fn case_47_absorption_does_not_depend_on_where_the_way_lies() {
     }
 }
 
+/// 47 and 48 of a ball, which is entered by one root and left by the other.
+#[test]
+fn case_47_absorption_of_a_ball_does_not_depend_on_where_it_lies() {
+    let (radius, absorption) = (0.75_f32, 3.0);
+    for offset in [0.0, 37.0, 1024.0, 16_384.0] {
+        let place = Place { turned: true, offset };
+        let center = place.point(Vec3::ZERO);
+        let scene = scene(&format!(
+            "[image]\nsize = [1, 1]\nbackground = 1\n[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 1\n\
+             [material.glass]\nior = 1\nfresnel = false\nabsorption = {absorption}\n\
+             [[sphere]]\ncenter = {:?}\nradius = {radius}\nmaterial = \"glass\"\n",
+            center.to_array()
+        ));
+        for (across, from) in [0.0, 0.3, 0.6].into_iter().flat_map(|across| FROM.map(|from| (across, from))) {
+            let target = Vec3::new(0.3, -0.2, 0.1).normalize() * across;
+            let [eye, target] = [target + from, target].map(|point| place.point(point));
+            let (origin, direction) = (eye.as_dvec3(), (target - eye).as_dvec3().normalize());
+            let past = (center.as_dvec3() - origin).reject_from_normalized(direction).length();
+            let s = 2.0 * (f64::from(radius).powi(2) - past * past).sqrt();
+            let expected = (-absorption * s).exp();
+            let bound = (absorption * s + 4.0) * 4.0 * U + absorption * 16.0 * 6.0 * U;
+            for engine in engines() {
+                let ray = aimed(&scene, engine, eye, target);
+                let off = (ray.colour[0] - expected).abs() / expected;
+                assert!(off <= bound, "{:.0}u off at {offset}, {engine:?}: {ray:?}", off / U);
+            }
+        }
+    }
+}
+
 /// What a tree of rays through one solid says of pairs.
 struct Pairs<'a> {
     planes: &'a [(DVec3, f64)],
