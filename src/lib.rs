@@ -39,6 +39,8 @@
 //! # }
 //! ```
 
+#[cfg(test)]
+mod boundary_cases;
 pub mod certified;
 pub mod cli;
 pub mod film;

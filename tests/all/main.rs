@@ -15,6 +15,7 @@ mod floor;
 mod folder;
 mod formats;
 mod hard_cases;
+mod hard_cases_light;
 mod measuring;
 mod model;
 mod pixel_tree;
