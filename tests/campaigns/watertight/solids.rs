@@ -1,6 +1,7 @@
 //! Which closed surfaces are shot at.
 
 use super::angular::{cube, l_prism, lattice, star_prism, u_prism};
+use super::bunny::{self, bunny};
 use super::random::Random;
 use super::round::{bumpy_globe, globe_of_both, icosphere, needle, torus};
 use super::solid::{Made, Solid};
@@ -11,7 +12,7 @@ pub(super) type Kind = (&'static str, fn(&mut Random) -> Solid);
 use Made::{Polygons, Triangles};
 
 /// Of triangles, of polygons, and of both.
-pub(super) const KINDS: [Kind; 16] = [
+pub(super) const KINDS: [Kind; 17] = [
     ("bumpy globe", bumpy_globe),
     ("icosphere", |_| icosphere()),
     ("torus", |_| torus()),
@@ -33,4 +34,14 @@ pub(super) const KINDS: [Kind; 16] = [
     ("lattice, both", |_| {
         lattice(12, |at| if at.iter().sum::<usize>() % 2 == 0 { Polygons } else { Triangles })
     }),
+    ("bunny", bunny),
 ];
+
+/// How many of them there are here: all but the bunny, where there is no file of it.
+pub(super) fn count() -> usize {
+    if bunny::file().is_none() {
+        eprintln!("WAVELANE_SCENES names no folder with bunny.obj: the bunny is not shot at");
+        return KINDS.len() - 1;
+    }
+    KINDS.len()
+}

@@ -63,8 +63,8 @@ impl Tally {
         Self { cells: vec![Cell::default(); KINDS.len() * Aim::ALL.len()], examples: BTreeMap::new() }
     }
 
-    pub(super) fn add(&mut self, kind: usize, aim: Aim, cell: Cell) {
-        self.cells[kind * Aim::ALL.len() + aim as usize] += cell;
+    pub(super) fn cell(&mut self, kind: usize, aim: Aim) -> &mut Cell {
+        &mut self.cells[kind * Aim::ALL.len() + aim as usize]
     }
 
     pub(super) fn add_example(&mut self, what: &'static str, example: impl FnOnce() -> String) {
@@ -112,7 +112,7 @@ impl fmt::Display for Tally {
         )?;
         writeln!(to, "|---|---|---|---|---|---|---|---|---|---|---|---|")?;
         for (kind, cells) in KINDS.iter().zip(self.cells.chunks(Aim::ALL.len())) {
-            for (aim, cell) in Aim::ALL.iter().zip(cells) {
+            for (aim, cell) in Aim::ALL.iter().zip(cells).filter(|(_, cell)| cell.rays > 0) {
                 writeln!(to, "| {} | {} {cell}", kind.0, aim.name())?;
             }
         }

@@ -64,13 +64,6 @@ impl<'a> Target<'a> {
         Self { ready, pool }
     }
 
-    /// The same for lanes of another width.
-    pub(super) fn set_width(&mut self, other: Width) {
-        if let Ready::Wavefront(_, width) = &mut self.ready {
-            *width = other;
-        }
-    }
-
     pub(super) fn closest(&self, rays: &RaySet) -> Hits {
         match &self.ready {
             Ready::Wavefront(prepared, width) => {
