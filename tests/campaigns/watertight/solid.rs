@@ -1,5 +1,6 @@
 //! Closed surfaces as lists of corners and faces, before they are placed anywhere.
 
+use super::random::Random;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -33,6 +34,15 @@ pub(super) enum Made {
 impl Solid {
     pub(super) fn new(corners: Vec<DVec3>, inside: Vec<DVec3>) -> Self {
         Self { corners, faces: Vec::new(), inside, lattice: None }
+    }
+
+    /// The same, every other time made up to 64 times as thin along its axes.
+    pub(super) fn stretched(mut self, random: &mut Random) -> Self {
+        if random.chance(0.5) {
+            let stretch = DVec3::from([(); 3].map(|()| random.between(-6.0, 0.0).exp2()));
+            self.corners.iter_mut().chain(&mut self.inside).for_each(|point| *point *= stretch);
+        }
+        self
     }
 
     /// A triangle, or a polygon of more corners.
