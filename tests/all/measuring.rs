@@ -97,7 +97,7 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
     let kinds: Vec<_> = rungs["kernels"].as_array().unwrap().iter().map(|of| &of["rays"]).collect();
     assert_eq!(kinds, ["primary", "shadow", "reflect", "refract"]);
     for kernels in rungs["kernels"].as_array().unwrap() {
-        for (primitive, formulas) in [("sphere", 3), ("triangle", 2)] {
+        for (primitive, formulas) in [("boxes", 3), ("sphere", 3), ("triangle", 2), ("polygon", 2)] {
             let formulas_found = kernels[primitive]["formulas"].as_array().unwrap();
             assert_eq!(formulas_found.len(), formulas, "{kernels}");
             for formula in formulas_found {
@@ -107,6 +107,7 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
         }
     }
     assert!(rungs["leaks"]["edge_rays"].as_u64().unwrap() > 0, "{}", rungs["leaks"]);
+    assert!(rungs["box_corners"]["true_hits"].as_u64().unwrap() > 0, "{}", rungs["box_corners"]);
     let frames = rungs["min_weight"]["frames"].as_array().unwrap();
     assert_eq!(
         frames[0]["rays"], found["frame_rays"],
@@ -121,6 +122,11 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
     for word in [
         "spheres, refract rays",
         "triangles, primary rays",
+        "polygons, shadow rays",
+        "boxes, reflect rays",
+        "True hits left out: of",
+        "Corners of boxes: rays",
+        "are no choices",
         "watertight, the engine's",
         "Leaks: of",
         "min_weight",
