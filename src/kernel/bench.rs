@@ -70,6 +70,7 @@ impl Rays {
     fn line<F: Single>(&self, row: usize) -> Line<F> {
         Line {
             origin: vector(&self.origin, row),
+            origin_low: None,
             direction: vector(&self.direction, row),
             a: F::load(&self.a[row..]),
             inverse_a: F::load(&self.inverse_a[row..]),
@@ -81,6 +82,7 @@ impl Rays {
         let [x, y, z] = &self.origin;
         RaySpace {
             origin: [F::load(&x[row..]), F::load(&y[row..]), F::load(&z[row..])],
+            origin_low: None,
             shear: [F::load(&self.shear[0][row..]), F::load(&self.shear[1][row..])],
             t_per_z: F::load(&self.t_per_z[row..]),
         }
@@ -173,7 +175,7 @@ fn meet_polygons<F: Single>(rays: &Rays, polygons: &[(Vec<[f32; 3]>, [f32; 3])],
             if outline.odd.any() {
                 let line = rays.line::<F>(row);
                 let corner_ts = [outline.least_z * space.t_per_z, outline.largest_z * space.t_per_z];
-                let meeting = polygon::meet_plane([line.origin, line.direction], plane, corner_ts, zero);
+                let meeting = polygon::meet_plane(&line, plane, corner_ts, zero);
                 let hit = outline.odd & meeting.meets & meeting.t.gt(zero);
                 pairs += keep(meeting.t, hit, &mut nearest[row..]);
             }

@@ -5,7 +5,8 @@
 //! axis each face rounds its own hit point, and rays aimed at the edge of a closed solid get out between two faces; seen
 //! along the ray two faces share the very numbers of their common edge.
 
-use super::ray_space::{Seen, cross};
+use super::ray_space::{Seen, area_error, cross, crosses};
+use super::sphere::Line;
 use crate::lanes::{Lanes, Mask, Vector};
 
 /// What is known of a polygon after some of its edges.
@@ -13,6 +14,9 @@ use crate::lanes::{Lanes, Mask, Vector};
 pub(crate) struct Outline<L: Lanes> {
     /// Whether the edges so far cross the half-line from the ray's foot an odd number of times.
     pub(crate) odd: L::Mask,
+    /// Whether the foot is so near to one of the edges that rounding may have put it on the other side; false where that was
+    /// not asked.
+    pub(crate) unclear: L::Mask,
     /// The smallest and the largest distance of a corner along the ray's third axis.
     pub(crate) least_z: L,
     pub(crate) largest_z: L,
@@ -24,18 +28,41 @@ impl<L: Lanes> Outline<L> {
     where
         L: Lanes<Scalar = f32>,
     {
-        Self { odd: L::first(0), least_z: L::splat(f32::INFINITY), largest_z: L::splat(f32::NEG_INFINITY) }
+        Self {
+            odd: L::first(0),
+            unclear: L::first(0),
+            least_z: L::splat(f32::INFINITY),
+            largest_z: L::splat(f32::NEG_INFINITY),
+        }
     }
 
-    /// Takes in an edge. Half open: a corner level with the foot counts as above it, for every edge alike.
+    /// Takes in an edge.
     #[inline(always)]
     pub(crate) fn add_edge(&mut self, from: &Seen<L>, to: &Seen<L>, zero: L) {
-        let (from_below, to_below) = (from.y.lt(zero), to.y.lt(zero));
         // Both faces at an edge compute the same but for the sign.
+        self.add_turn(from, to, cross(from, to), zero);
+    }
+
+    /// Takes in an edge, and asks whether the foot is too near to it; `size` is the longest distance between two corners.
+    #[inline(always)]
+    pub(crate) fn add_edge_with_doubt(
+        &mut self,
+        from: &Seen<L>,
+        to: &Seen<L>,
+        size: L,
+        edges: L::Mask,
+        zero: L,
+    ) where
+        L: Lanes<Scalar = f32>,
+    {
         let turn = cross(from, to);
-        let upward = from_below & !to_below & turn.gt(zero);
-        let downward = !from_below & to_below & turn.lt(zero);
-        self.odd = self.odd.xor(upward | downward);
+        self.add_turn(from, to, turn, zero);
+        self.unclear = self.unclear | (edges & turn.abs().le(area_error(to, size)));
+    }
+
+    #[inline(always)]
+    fn add_turn(&mut self, from: &Seen<L>, to: &Seen<L>, turn: L, zero: L) {
+        self.odd = self.odd.xor(crosses(from, to, turn, zero));
         self.least_z = to.z.min(self.least_z);
         self.largest_z = to.z.max(self.largest_z);
     }
@@ -56,13 +83,13 @@ pub(crate) struct Meeting<L: Lanes> {
 /// all of its corners, so t is kept between theirs.
 #[inline(always)]
 pub(crate) fn meet_plane<L: Lanes>(
-    [origin, direction]: [Vector<L>; 2],
+    line: &Line<L>,
     [point, normal]: [Vector<L>; 2],
     corner_ts: [L; 2],
     zero: L,
 ) -> Meeting<L> {
-    let slope = normal.dot(direction);
-    let height = normal.dot(point - origin);
+    let slope = normal.dot(line.direction);
+    let height = -normal.dot(line.origin_from(point));
     let [one, other] = corner_ts;
     let (least, largest) = (one.min(other), one.max(other));
     let t = (height / slope).max(least).min(largest);

@@ -1,5 +1,6 @@
 //! The world as seen along a ray.
 
+use super::UNIT_ROUNDOFF;
 use crate::lanes::Lanes;
 
 /// The shear that turns the ray's direction into (0, 0, 1).
@@ -7,8 +8,8 @@ use crate::lanes::Lanes;
 /// Every face that uses a vertex gets the same two coordinates for it, and questions of left or right are asked of these
 /// alone, so neighbouring faces never disagree about their common edge: no ray slips between them.
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013. We keep x and y in their cyclic
-/// order for directions of either sign, since faces are two-sided here; and there is no second try in double precision,
-/// since an edge function that rounds to 0 counts as a hit.
+/// order for directions of either sign, since faces are two-sided here; and there is no second try in double precision for
+/// an edge function that rounds to 0, since [`crosses`] decides for both faces at the edge alike.
 ///
 /// Coordinates are in the ray's order of axes: the third is the one along which the ray is fastest. All lanes have one
 /// order.
@@ -16,6 +17,8 @@ use crate::lanes::Lanes;
 pub(crate) struct RaySpace<L> {
     /// Of the ray, in its order of axes.
     pub(crate) origin: [L; 3],
+    /// What the origin's rounding to f32 left out; none where that is nothing, as of rays from the eye.
+    pub(crate) origin_low: Option<[L; 3]>,
     /// d_x / d_z and d_y / d_z, each as a product with 1 / d_z.
     pub(crate) shear: [L; 2],
     /// 1 / d_z: turns a distance along the third axis into t.
@@ -31,12 +34,40 @@ pub(crate) struct Seen<L> {
 }
 
 impl<L: Lanes> RaySpace<L> {
-    /// A point given in the ray's order of axes.
+    /// A point given in the ray's order of axes. Its x and y are off by at most 3u·|x| + 7u·|z|, and 3u·|y| + 7u·|z|: two
+    /// roundings of each difference, two of the shear, one of the product and one of the last difference.
     #[inline(always)]
     pub(crate) fn see(&self, point: [L; 3]) -> Seen<L> {
         let [x, y, z] = [point[0] - self.origin[0], point[1] - self.origin[1], point[2] - self.origin[2]];
+        let [x, y, z] = match self.origin_low {
+            Some(low) => [x - low[0], y - low[1], z - low[2]],
+            None => [x, y, z],
+        };
         Seen { x: x - self.shear[0] * z, y: y - self.shear[1] * z, z }
     }
+}
+
+/// How far the area that an edge spans with the ray's foot may be from the true one, at most, if the foot is no farther
+/// outside of the face than rounding can put it; `size` is the longest distance s between two of the face's corners, of which
+/// `corner` is one.
+///
+/// Sheared, corners are at most √2·s apart, so none is farther than that from the foot, and none is deeper than |z| + s, z
+/// the depth of any one of them. So each of their coordinates is off by at most u·(11.3s + 7|z|), see [`RaySpace::see`]; times
+/// the four of them in two products, and the rounding of these, this makes u·(72s² + 40s|z|).
+#[inline(always)]
+pub(crate) fn area_error<L: Lanes<Scalar = f32>>(corner: &Seen<L>, size: L) -> L {
+    size * L::splat(64.0 * UNIT_ROUNDOFF) * (corner.z.abs() + size + size)
+}
+
+/// Whether an edge crosses the half-line from the ray's foot along x: seen from a closed outline, the foot is inside where
+/// the edges do so an odd number of times. Half open: a corner level with the foot counts as above it and an edge through it
+/// as left of it, for every face alike. So exactly one of two faces at an edge holds what falls on it.
+#[inline(always)]
+pub(crate) fn crosses<L: Lanes>(from: &Seen<L>, to: &Seen<L>, turn: L, zero: L) -> L::Mask {
+    let (from_below, to_below) = (from.y.lt(zero), to.y.lt(zero));
+    let upward = from_below & !to_below & turn.gt(zero);
+    let downward = !from_below & to_below & turn.lt(zero);
+    upward | downward
 }
 
 /// Twice the signed area of the triangle (foot of the ray, a, b). The two products are rounded before they are

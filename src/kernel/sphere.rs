@@ -6,10 +6,24 @@ use crate::lanes::{Lanes, Vector};
 #[derive(Clone, Copy)]
 pub(crate) struct Line<L> {
     pub(crate) origin: Vector<L>,
+    /// What the origin's rounding to f32 left out; none where that is nothing, as of rays from the eye.
+    pub(crate) origin_low: Option<Vector<L>>,
     pub(crate) direction: Vector<L>,
     /// a = d·d and 1/a.
     pub(crate) a: L,
     pub(crate) inverse_a: L,
+}
+
+impl<L: Lanes> Line<L> {
+    /// The origin relative to a point: two roundings.
+    #[inline(always)]
+    pub(crate) fn origin_from(&self, point: Vector<L>) -> Vector<L> {
+        let from_point = self.origin - point;
+        match self.origin_low {
+            Some(low) => from_point + low,
+            None => from_point,
+        }
+    }
 }
 
 /// Where a line meets a sphere.
@@ -28,7 +42,7 @@ pub(crate) struct Meeting<L: Lanes> {
 /// Tracing Gems, 2019.
 #[inline(always)]
 pub(crate) fn meet<L: Lanes>(line: &Line<L>, center: Vector<L>, radius_squared: L, zero: L) -> Meeting<L> {
-    let from_center = line.origin - center;
+    let from_center = line.origin_from(center);
     let closest_t = -(from_center.dot(line.direction) * line.inverse_a);
     let closest = from_center + line.direction * closest_t;
     let half_squared = radius_squared - closest.length_squared();

@@ -1,12 +1,15 @@
 //! A ray against a triangle.
 
-use super::ray_space::{RaySpace, Seen, cross};
-use crate::lanes::Lanes;
+use super::UNIT_ROUNDOFF;
+use super::ray_space::{RaySpace, Seen, area_error, cross, crosses};
+use crate::lanes::{Lanes, Mask};
 
 /// Where a ray meets the plane of a triangle, and whether that is inside.
 pub(crate) struct Meeting<L: Lanes> {
-    /// Edges and corners count as inside.
+    /// Of what falls on an edge, one of the two triangles there holds it.
     pub(crate) inside: L::Mask,
+    /// Some area that the foot spans with an edge is 0.
+    tied: L::Mask,
     /// The least and the largest of the areas that the ray's foot spans with the edges.
     least: L,
     largest: L,
@@ -17,8 +20,10 @@ pub(crate) struct Meeting<L: Lanes> {
     corners: [Seen<L>; 3],
 }
 
-/// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign; t is the mean of
-/// the vertices' t by these areas, so it never lies outside of theirs: |δt| ≤ 6u·(L + s²/h)/cos θ by measurement, with L the
+/// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign. Where one of them is
+/// 0 the edges decide as those of a polygon do, see [`crosses`], which is the same question: all faces that meet at an edge or
+/// at a corner answer it from the same numbers, and however these are rounded, a closed surface is crossed an even number of
+/// times. t is the mean of the vertices' t by these areas, so it never lies outside of theirs: |δt| ≤ 6u·(L + s²/h)/cos θ by measurement, with L the
 /// largest distance of a vertex from the origin, s the longest edge and h the height above it, which matters for needles
 /// (Woop, Benthin and Wald 2013; see [`RaySpace`]).
 ///
@@ -29,19 +34,41 @@ pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) 
     let (u, v, w) = (cross(&b, &c), cross(&c, &a), cross(&a, &b));
     let area = u + v + w;
     let volume = u * a.z + v * b.z + w * c.z;
-    let least = u.min(v).min(w);
-    let largest = u.max(v).max(w);
-    let one_sided = least.ge(zero) | largest.le(zero);
-    // Seen edge-on there is no area, and t is not a number.
-    let inside = one_sided & !area.eq(zero);
-    Meeting { inside, least, largest, volume, seen_double_area: area, corners: [a, b, c] }
+    let (lesser, greater) = (u.min(v), u.max(v));
+    let (least, largest) = (lesser.min(w), greater.max(w));
+    let middle = lesser.max(greater.min(w));
+    let mut inside = least.gt(zero) | largest.lt(zero);
+    let tied = least.eq(zero) | middle.eq(zero) | largest.eq(zero);
+    if tied.any() {
+        let odd = crosses(&b, &c, u, zero).xor(crosses(&c, &a, v, zero)).xor(crosses(&a, &b, w, zero));
+        inside = inside | (tied & odd);
+    }
+    Meeting { inside, tied, least, largest, volume, seen_double_area: area, corners: [a, b, c] }
 }
 
 impl<L: Lanes> Meeting<L> {
-    /// Whether the foot is inside or not farther outside than a margin, an area.
+    /// Whether the foot may be inside, and whether it is for certain; `size` is the length of the longest edge.
     #[inline(always)]
-    pub(crate) fn is_inside(&self, margin: L) -> L::Mask {
-        self.least.ge(-margin) | self.largest.le(margin)
+    pub(crate) fn may_be_inside(&self, size: L) -> (L::Mask, L::Mask)
+    where
+        L: Lanes<Scalar = f32>,
+    {
+        let error = area_error(&self.corners[0], size);
+        let may_be = self.least.ge(-error) | self.largest.le(error);
+        (may_be, self.least.gt(error) | self.largest.lt(-error))
+    }
+
+    /// Whether the ray's origin, if the foot is inside, is so near to the plane that rounding may have put it on the other
+    /// side; `size` is the length of the longest edge.
+    ///
+    /// Where the plane is met that near, no corner is deeper than about the longest edge s. Then areas are off by at most
+    /// 112u·s² each (see [`area_error`]) and the volume by 350u·s³.
+    #[inline(always)]
+    pub(crate) fn touches(&self, size: L) -> L::Mask
+    where
+        L: Lanes<Scalar = f32>,
+    {
+        !self.volume.abs().gt(size * L::splat(384.0 * UNIT_ROUNDOFF) * size * size)
     }
 
     /// The seen area, less what rounding may have added to it if each corner is off by `off`; not below 0. The foot is inside,
@@ -58,6 +85,13 @@ impl<L: Lanes> Meeting<L> {
     /// Divides: for those that are inside.
     #[inline(always)]
     pub(crate) fn t(&self, ray: &RaySpace<L>) -> L {
-        self.volume * ray.t_per_z / self.seen_double_area
+        let t = self.volume * ray.t_per_z / self.seen_double_area;
+        if !self.tied.any() {
+            return t;
+        }
+        // Areas that rounding has given different signs, of a triangle that is seen edge-on, have a mean anywhere, or none.
+        let [a, b, c] = self.corners.each_ref().map(|corner| corner.z * ray.t_per_z);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        L::select(self.tied, t.max(low).min(high), t)
     }
 }

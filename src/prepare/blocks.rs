@@ -9,15 +9,15 @@ pub(crate) const BLOCK: usize = 4;
 /// | bytes | field |
 /// |---|---|
 /// | 0–143 | `vertices`: first, second and third; x, y and z; a lane a triangle |
-/// | 144–159 | `slack` |
+/// | 144–159 | `size` |
 /// | 160–175 | `error_area` |
 /// | 176–191 | `ids` |
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleBlock {
     pub(crate) vertices: [[[f32; BLOCK]; 3]; 3],
-    /// What is nearer to the plane than this touches it, times twice the area; see [`touch_distance`].
-    pub(crate) slack: [f32; BLOCK],
+    /// Length of the longest edge.
+    pub(crate) size: [f32; BLOCK],
     /// Twice the area, and for needles more: what the error of t is in proportion to.
     pub(crate) error_area: [f32; BLOCK],
     pub(crate) ids: [u32; BLOCK],
@@ -48,6 +48,8 @@ pub(crate) struct PolygonFace {
     pub(crate) normal: [f32; 3],
     /// The first corner.
     pub(crate) point: [f32; 3],
+    /// No two corners are farther apart.
+    pub(crate) size: f32,
     /// What is nearer to the plane than this touches it.
     pub(crate) slack: f32,
     pub(crate) id: u32,
@@ -60,20 +62,20 @@ pub(crate) struct PolygonFace {
 }
 
 const _: () = assert!(size_of::<TriangleBlock>() == 192 && size_of::<SphereBlock>() == 96);
-const _: () = assert!(size_of::<PolygonFace>() == 44);
+const _: () = assert!(size_of::<PolygonFace>() == 48);
 
-/// How near a point that was rounded to f32 is to a surface that it lies on, as the kernels see it: the point itself is off
-/// by √3·u of its coordinates, and the test's own rounding is 6u of the distances from the point to the primitive's ends,
-/// which is its size where they touch. Nothing nearer than this can be told apart from touching.
-pub(super) fn touch_distance(extent: f32, size: f32) -> f32 {
-    UNIT_ROUNDOFF * (2.0 * extent + 6.0 * size)
+/// How near to a surface a point may be that the kernels cannot tell from one on it, or beyond it: some roundings of the
+/// distances from the point to the primitive's ends, and where they touch that is the primitive's size. Of polygons the height
+/// above the plane is off by 7u of it, of spheres by 18u of the diameter; both are rounded up.
+pub(super) fn touch_distance(size: f32) -> f32 {
+    32.0 * UNIT_ROUNDOFF * size
 }
 
 impl TriangleBlock {
     /// Triangles of no area, which nothing hits.
     pub(super) const EMPTY: Self = Self {
         vertices: [[[0.0; BLOCK]; 3]; 3],
-        slack: [0.0; BLOCK],
+        size: [0.0; BLOCK],
         error_area: [0.0; BLOCK],
         ids: [u32::MAX; BLOCK],
     };
@@ -86,13 +88,12 @@ impl TriangleBlock {
             }
         }
         let [a, b, c] = vertices;
-        let extent = vertices.map(|vertex| vertex.abs().max_element()).into_iter().fold(0.0, f32::max);
         let size = [a - b, b - c, c - a].map(Vec3::length).into_iter().fold(0.0, f32::max);
         let double_area = (b - a).cross(c - a).length();
         // The kernel's error of a distance from the plane is 6u·(L + s²/h) by measurement, with s the longest edge and h the
         // height above it; and s²/h = s³ / double area.
         let cube = size * size * size;
-        self.slack[lane] = touch_distance(extent, size) * double_area + 6.0 * UNIT_ROUNDOFF * cube;
+        self.size[lane] = size;
         self.error_area[lane] = double_area + cube / scene_extent;
         self.ids[lane] = id;
     }
@@ -112,8 +113,7 @@ impl SphereBlock {
             self.centers[axis][lane] = center[axis];
         }
         self.radii[lane] = radius;
-        let extent = center.abs().max_element() + radius;
-        self.slack[lane] = touch_distance(extent, 2.0 * radius) * radius;
+        self.slack[lane] = touch_distance(2.0 * radius) * radius;
         self.ids[lane] = id;
     }
 }

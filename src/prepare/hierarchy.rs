@@ -195,7 +195,8 @@ impl Hierarchy {
         self.polygons.push(PolygonFace {
             normal: normal.as_vec3().to_array(),
             point: corners[0].to_array(),
-            slack: touch_distance(largest_coordinate(bounds), size) + 2.0 * rounded(bend),
+            size,
+            slack: touch_distance(size) + 2.0 * rounded(bend),
             id: polygon.id.0,
             first_corner: u32::try_from(first).unwrap_or(u32::MAX),
             edges: polygon.vertices.end - polygon.vertices.start,

@@ -231,21 +231,22 @@ pub(super) struct TriangleHit {
     barycentric: [f64; 3],
 }
 
-/// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign; the areas are
-/// the barycentric weights, and t is the mean of the vertices' t by these weights. Edges and corners belong to it.
+/// Seen along the ray, the signed areas that its foot spans with the edges are the barycentric weights, and t is the mean of
+/// the vertices' t by these weights. Inside is what is inside of a polygon: see [`crosses`].
 pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
-    let [a, b, c] = vertices.map(|vertex| ray.project(vertex));
-    let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-        return None;
+    let seen @ [a, b, c] = vertices.map(|vertex| ray.project(vertex));
+    let inside =
+        [(a, b), (b, c), (c, a)].into_iter().filter(|&(from, to)| crosses(from, to)).count() % 2 == 1;
+    let weights = [cross(b, c), cross(c, a), cross(a, b)];
+    let area = weights[0] + weights[1] + weights[2];
+    if !inside || area == 0.0 {
+        return None; // or seen edge-on
     }
-    let area = u + v + w;
-    if area == 0.0 {
-        return None; // seen edge-on
-    }
-    let barycentric = [u / area, v / area, w / area];
+    let barycentric = weights.map(|weight| weight / area);
     let t = barycentric[0] * a.z + barycentric[1] * b.z + barycentric[2] * c.z;
-    Some(TriangleHit { t, barycentric })
+    // Seen nearly edge-on, areas may be nothing but rounding; a point of the triangle is no nearer than its nearest vertex.
+    let (low, high) = seen.iter().fold((a.z, a.z), |(low, high), seen| (low.min(seen.z), high.max(seen.z)));
+    Some(TriangleHit { t: t.clamp(low, high), barycentric })
 }
 
 /// Crossing-number test (Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994) of where the ray meets the
@@ -260,14 +261,7 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
     let mut from = ray.project(vertices[vertices.len() - 1]);
     for &vertex in vertices {
         let to = ray.project(vertex);
-        // Half open: a vertex level with the foot counts as above it, for every edge alike.
-        if (from.y < 0.0) != (to.y < 0.0) {
-            // From the lower to the upper end, so that both faces at an edge compute the same.
-            let (lower, upper) = if from.y < 0.0 { (from, to) } else { (to, from) };
-            if cross(lower, upper) > 0.0 {
-                inside = !inside;
-            }
-        }
+        inside ^= crosses(from, to);
         (low_t, high_t) = (low_t.min(to.z), high_t.max(to.z));
         from = to;
     }
@@ -281,6 +275,14 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
     let t = normal.dot(vertices[0] - ray.origin) / slope;
     // A plane seen nearly edge-on is met anywhere; a point of the polygon is no nearer than its nearest vertex.
     Some(t.clamp(low_t, high_t))
+}
+
+/// Whether an edge crosses the half-line from the ray's foot along x. Half open: a vertex level with the foot counts as above
+/// it, and an edge through it as left of it, for every face alike; so of two faces at an edge one holds what falls on it.
+fn crosses(from: DVec3, to: DVec3) -> bool {
+    // From the lower to the upper end, so that both faces at an edge compute the same.
+    let (lower, upper) = if from.y < 0.0 { (from, to) } else { (to, from) };
+    lower.y < 0.0 && upper.y >= 0.0 && cross(lower, upper) > 0.0
 }
 
 /// Twice the signed area of the triangle (foot of the ray, a, b). The two products are rounded before they are

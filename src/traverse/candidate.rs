@@ -1,10 +1,17 @@
 //! What counts as a hit of a primitive, for one pair of ray and primitive in each lane.
 //!
 //! A ray that starts on a surface meets that surface again only where geometry says so: a plane never, a sphere once if the
-//! ray goes inside. This is known from the event that made the ray, not from the sign of a rounded number. Where the start
-//! is so near to another surface that f32 cannot tell on which side of it, `exact` decides, which knows what the start's
-//! rounding left out. Together they keep a surface from shadowing or reflecting itself or its neighbours, without a
+//! ray goes inside. This is known from the event that made the ray, not from the sign of a rounded number. Where a ray starts
+//! so near to another surface that f32 cannot tell on which side of it, `exact` decides in f64.
+//!
+//! A ray that starts on a surface passes the edges of its neighbours closely, and must neither hit one that it rises above nor
+//! slip between two that it falls on. So for such rays the tests take the whole start, with what its rounding left out, and
+//! `exact` also decides wherever the foot of the ray is so near to an edge that f32 cannot tell on which side. What f32 decides
+//! is then what f64 would. Together they keep a surface from shadowing or reflecting itself or its neighbours, without a
 //! tolerance that a scene could be too small or too large for.
+//!
+//! For a ray from the eye there is nothing to be taken for the surface that it leaves. It only has to find one of two faces at
+//! an edge and not the other, which the kernels see to in f32.
 
 use crate::kernel::polygon::{self, Outline};
 use crate::kernel::sphere::{self, Line};
@@ -30,8 +37,7 @@ pub(super) struct Candidate<F: Single> {
     /// How far t may be from the true one, at most.
     pub(super) error: F,
     pub(super) hit: F::Mask,
-    /// Lanes whose ray starts so near to the surface that f32 cannot tell on which side: `exact` decides, and `hit` is
-    /// false.
+    /// Lanes in which f32 cannot tell: `exact` decides, and `hit` is false.
     pub(super) unclear: F::Mask,
 }
 
@@ -56,28 +62,27 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
     space: &RaySpace<F>,
     padding: F,
     vertices: [[F; 3]; 3],
-    [slack, error_area]: [F; 2],
+    [size, error_area]: [F; 2],
     start: Start<F>,
 ) -> Candidate<F> {
     let zero = F::splat(0.0);
     let meeting = triangle::meet(space, vertices, zero);
-    let touches = if DEPARTING {
-        // A little beyond the edges too: the start itself is rounded.
-        let margin = meeting.seen_double_area.abs() * F::splat(1.0 / 256.0);
-        let is_seen = !meeting.seen_double_area.eq(zero);
-        meeting.is_inside(margin) & is_seen & !meeting.volume.abs().gt(slack) & !start.own
+    let (may_be_inside, inside) = if DEPARTING {
+        let (may_be, is) = meeting.may_be_inside(size);
+        (may_be & !start.own, is & !start.own)
     } else {
-        F::first(0)
+        (meeting.inside, meeting.inside)
     };
-    if !(meeting.inside | touches).any() {
+    if !may_be_inside.any() {
         return Candidate::none();
     }
+    let touches = meeting.touches(size);
     let t = meeting.t(space);
-    let hit = meeting.inside & t.gt(start.t_min);
-    let hit = if DEPARTING { hit & !touches & !start.own } else { hit };
+    let hit = inside & !touches & t.gt(start.t_min);
+    let unclear = may_be_inside & (touches | !inside);
     // cos θ·|d| = |seen area·d_z| / area. Seen so nearly edge-on that the area may be nothing but rounding, t may be anything.
     let error = padding * error_area * space.t_per_z.abs() / meeting.least_seen_area(padding, zero);
-    Candidate { t, error, hit, unclear: touches }
+    Candidate { t, error, hit, unclear }
 }
 
 #[inline(always)]
@@ -96,10 +101,11 @@ pub(super) fn sphere<F: Single, const DEPARTING: bool>(
     // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
     let error = (padding + padding) * radius / (meeting.half_t * line.a);
     let (t, hit) = meeting.nearest(start.t_min);
+    let touches = meeting.touches(line, slack);
     if !DEPARTING {
-        return Candidate { t, error, hit, unclear: F::first(0) };
+        return Candidate { t, error, hit: hit & !touches, unclear: touches };
     }
-    let touches = meeting.touches(line, slack) & !start.own;
+    let touches = touches & !start.own;
     let far_side = meeting.far_side();
     let own_hit = start.own & start.inward & far_side.gt(zero);
     let hit = own_hit | (!start.own & !touches & hit);
@@ -117,14 +123,16 @@ pub(super) fn polygon<F: Single, const DEPARTING: bool>(
 ) -> Candidate<F> {
     let zero = F::splat(0.0);
     let corner_ts = [outline.least_z * view.space.t_per_z, outline.largest_z * view.space.t_per_z];
-    let meeting = polygon::meet_plane([view.line.origin, view.line.direction], plane, corner_ts, zero);
-    let hit = outline.odd & meeting.meets & meeting.t.gt(start.t_min);
+    let meeting = polygon::meet_plane(&view.line, plane, corner_ts, zero);
+    let (may_be_inside, inside) = (outline.odd | outline.unclear, outline.odd & !outline.unclear);
+    let touches = !meeting.height.abs().gt(slack);
+    let hit = inside & !touches & meeting.meets & meeting.t.gt(start.t_min);
+    let unclear = may_be_inside & (touches | !inside);
     // Of the slope too, some roundings are not to be relied on.
     let slope = (meeting.slope.abs() - F::splat(8.0 * UNIT_ROUNDOFF) * view.line.a).max(zero);
     let error = view.padding / slope;
-    if !DEPARTING {
-        return Candidate { t: meeting.t, error, hit, unclear: F::first(0) };
+    if DEPARTING {
+        return Candidate { t: meeting.t, error, hit: hit & !start.own, unclear: unclear & !start.own };
     }
-    let touches = !meeting.height.abs().gt(slack) & !start.own;
-    Candidate { t: meeting.t, error, hit: hit & !touches & !start.own, unclear: touches }
+    Candidate { t: meeting.t, error, hit, unclear }
 }

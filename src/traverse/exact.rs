@@ -1,4 +1,5 @@
-//! What f32 cannot tell: which of two hits is the nearer, and whether a ray that starts next to a surface meets it.
+//! What f32 cannot tell: which of two hits is the nearer, whether a ray that starts next to a surface meets it, and whether one
+//! that leaves a surface passes an edge inside or outside.
 //!
 //! A kernel's t comes with a bound on its error. Hits whose t lie farther apart than their errors are in the order of
 //! their t; for the others t is computed again in f64. So the nearest hit is the nearest in f64, in whatever order
@@ -165,8 +166,23 @@ impl Line {
         Self { origin: origin + origin_low, direction, departure }
     }
 
-    /// Where a ray that starts next to a surface meets it. What the start touches, as far as f64 can tell and polygons are
-    /// flat, it meets at t = 0, which is no hit.
+    /// Where a ray meets a surface beyond `t_min`, next to which it starts; that the ray passes inside of the surface's edges is
+    /// known. Faces that share an edge have decided that alike, and here they do not decide it anew.
+    #[cold]
+    pub(super) fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot, t_min: f32) -> Option<f32> {
+        let beyond = |hit: Hit| {
+            let t = rounded(hit.t);
+            (hit.t > f64::from(t_min) && t > t_min).then_some(t)
+        };
+        match spot.shape(hierarchy) {
+            Shape::Sphere { center, radius, .. } => self.sphere(center, radius).into_iter().find_map(beyond),
+            Shape::Triangle(vertices) => beyond(self.triangle(vertices)),
+            Shape::Polygon { normal, corners } => beyond(self.polygon(normal, &corners)),
+        }
+    }
+
+    /// Where a ray that leaves a surface meets another. What the start touches, as far as f64 can tell and polygons are flat, it
+    /// meets at t = 0, which is no hit.
     #[cold]
     pub(super) fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         let bend = hierarchy.bend(self.departure >> 1) + hierarchy.bend(spot.id(hierarchy));
@@ -180,12 +196,12 @@ impl Line {
             Shape::Triangle(vertices) => {
                 let extent = extent_of(vertices.into_iter());
                 let t = self.beyond_rounding(self.triangle(vertices), extent, bend)?;
-                self.is_in_triangle(vertices).then_some(t)
+                self.is_in(&vertices).then_some(t)
             }
             Shape::Polygon { normal, corners } => {
                 let extent = extent_of(corners.iter().copied());
                 let t = self.beyond_rounding(self.polygon(normal, &corners), extent, bend)?;
-                self.is_in_polygon(&corners).then_some(t)
+                self.is_in(&corners).then_some(t)
             }
         }
     }
@@ -194,8 +210,7 @@ impl Line {
     fn beyond_rounding(&self, hit: Hit, extent: f64, bend: f64) -> Option<f32> {
         let coordinates = extent + self.origin.abs().max_element();
         let height = hit.t * hit.cosine.max(LEAST_COSINE) * self.direction.length();
-        #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
-        let t = hit.t as f32;
+        let t = rounded(hit.t);
         (height > TOUCHING * coordinates + bend && t > 0.0).then_some(t)
     }
 
@@ -207,13 +222,8 @@ impl Line {
         [(third + 1) % 3, (third + 2) % 3].map(|axis| from_origin[axis] - self.direction[axis] * along)
     }
 
-    fn is_in_triangle(&self, vertices: [DVec3; 3]) -> bool {
-        let [a, b, c] = vertices.map(|vertex| self.see(vertex));
-        let areas = [cross(b, c), cross(c, a), cross(a, b)];
-        areas.iter().all(|&area| area >= 0.0) || areas.iter().all(|&area| area <= 0.0)
-    }
-
-    fn is_in_polygon(&self, corners: &[DVec3]) -> bool {
+    /// Whether the ray passes inside of the edges between corners; see `kernel`'s `crosses`.
+    fn is_in(&self, corners: &[DVec3]) -> bool {
         let next = corners.iter().cycle().skip(1);
         let crossed = corners.iter().zip(next).filter(|&(&from, &to)| {
             let (from, to) = (self.see(from), self.see(to));
@@ -311,6 +321,11 @@ impl Line {
         let t = if t >= enter { t } else { enter };
         Hit { t, cosine: slope.abs() / (length * self.direction.length()) }
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
+fn rounded(t: f64) -> f32 {
+    t as f32
 }
 
 /// Twice the signed area of the triangle (foot of the ray, a, b).

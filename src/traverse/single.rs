@@ -84,17 +84,19 @@ impl Ray {
         }
     }
 
-    pub(crate) fn space<L: Lanes<Scalar = f32>>(&self) -> RaySpace<L> {
+    pub(crate) fn space<L: Lanes<Scalar = f32>, const DEPARTING: bool>(&self) -> RaySpace<L> {
         RaySpace {
             origin: self.axes.map(|axis| L::splat(self.origin[axis])),
+            origin_low: DEPARTING.then(|| self.axes.map(|axis| L::splat(self.origin_low[axis]))),
             shear: self.shear.map(L::splat),
             t_per_z: L::splat(self.t_per_z),
         }
     }
 
-    pub(crate) fn line<L: Lanes<Scalar = f32>>(&self) -> Line<L> {
+    pub(crate) fn line<L: Lanes<Scalar = f32>, const DEPARTING: bool>(&self) -> Line<L> {
         Line {
             origin: Vector::splat(self.origin),
+            origin_low: DEPARTING.then(|| Vector::splat(self.origin_low)),
             direction: Vector::splat(self.direction),
             a: L::splat(self.a),
             inverse_a: L::splat(1.0 / self.a),
@@ -143,7 +145,7 @@ impl Target<'_> {
 
     /// Offers the lanes that hit; `spot` says where the first of them lies.
     #[inline(always)]
-    fn offer_lanes<F: Single, const ANY: bool>(
+    fn offer_lanes<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         candidate: &Candidate<F>,
         spot: impl Fn(usize) -> Spot,
@@ -153,7 +155,13 @@ impl Target<'_> {
         while unclear != 0 {
             let spot = spot(unclear.trailing_zeros() as usize);
             unclear &= unclear - 1;
-            if let Some(t) = self.ray.exact().departs_to(self.hierarchy, spot) {
+            let line = self.ray.exact();
+            let found = if DEPARTING {
+                line.departs_to(self.hierarchy, spot)
+            } else {
+                line.meets_beyond(self.hierarchy, spot, self.ray.t_min)
+            };
+            if let Some(t) = found {
                 self.offer::<ANY>(t, t * exact::ROUNDED, spot);
             }
         }
@@ -292,16 +300,16 @@ impl Target<'_> {
     ) {
         let ray = self.ray;
         let block = &self.hierarchy.triangles[index];
-        let (space, padding) = (ray.space::<F>(), F::splat(ray.padding));
+        let (space, padding) = (ray.space::<F, DEPARTING>(), F::splat(ray.padding));
         for first in (0..BLOCK).step_by(F::WIDTH) {
             let [a, b, c] = &block.vertices;
             let vertices =
                 [turned(a, ray.axes, first), turned(b, ray.axes, first), turned(c, ray.axes, first)];
             let start = ray.start(F::load_ids(&block.ids[first..]));
-            let sizes = [F::load(&block.slack[first..]), F::load(&block.error_area[first..])];
+            let sizes = [F::load(&block.size[first..]), F::load(&block.error_area[first..])];
             let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
             counts.triangles.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
-            self.offer_lanes::<F, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));
+            self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));
         }
     }
 
@@ -313,7 +321,7 @@ impl Target<'_> {
     ) {
         let ray = self.ray;
         let block = &self.hierarchy.spheres[index];
-        let (line, padding) = (ray.line::<F>(), F::splat(ray.padding));
+        let (line, padding) = (ray.line::<F, DEPARTING>(), F::splat(ray.padding));
         for first in (0..BLOCK).step_by(F::WIDTH) {
             let [x, y, z] = turned(&block.centers, [0, 1, 2], first);
             let start = ray.start(F::load_ids(&block.ids[first..]));
@@ -321,7 +329,7 @@ impl Target<'_> {
             let center = Vector::new(x, y, z);
             let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
             counts.spheres.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
-            self.offer_lanes::<F, ANY>(&candidate, |lane| Spot::sphere(index, first + lane));
+            self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::sphere(index, first + lane));
         }
     }
 
@@ -334,7 +342,7 @@ impl Target<'_> {
     ) {
         let (ray, hierarchy) = (self.ray, self.hierarchy);
         let face = &hierarchy.polygons[index];
-        let space = ray.space::<F>();
+        let space = ray.space::<F, DEPARTING>();
         let mut outline = Outline::<F>::new();
         let first = face.first_corner as usize;
         let edges = face.edges as usize;
@@ -344,23 +352,34 @@ impl Target<'_> {
             |from: usize| space.see([F::load(&x[from..]), F::load(&y[from..]), F::load(&z[from..])]);
         for edge in (first..first + edges).step_by(F::WIDTH) {
             // Beyond the last edge there are edges from the first corner to itself, which nothing crosses.
-            outline.add_edge(&corners(edge), &corners(edge + 1), zero);
-            counts.polygons.add(F::WIDTH, (first + edges - edge).min(F::WIDTH));
+            let (from, to, in_use) = (corners(edge), corners(edge + 1), (first + edges - edge).min(F::WIDTH));
+            if DEPARTING {
+                outline.add_edge_with_doubt(&from, &to, F::splat(face.size), F::first(in_use), zero);
+            } else {
+                outline.add_edge(&from, &to, zero);
+            }
+            counts.polygons.add(F::WIDTH, in_use);
         }
         let odd = !outline.odd.bits().count_ones().is_multiple_of(2);
-        if !odd && !DEPARTING {
+        let unclear = outline.unclear.any();
+        if !(odd | unclear) {
             return;
         }
         let outline = Outline {
             odd,
+            unclear,
             least_z: fold(outline.least_z, Lanes::min),
             largest_z: fold(outline.largest_z, Lanes::max),
         };
-        let view = View { space: ray.space::<f32>(), line: ray.line::<f32>(), padding: ray.padding };
+        let view = View {
+            space: ray.space::<f32, DEPARTING>(),
+            line: ray.line::<f32, DEPARTING>(),
+            padding: ray.padding,
+        };
         let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
         let start = ray.start::<f32>(face.id);
         let candidate = candidate::polygon::<f32, DEPARTING>(&view, plane, &outline, face.slack, start);
-        self.offer_lanes::<f32, ANY>(&candidate, |_| Spot::polygon(index));
+        self.offer_lanes::<f32, DEPARTING, ANY>(&candidate, |_| Spot::polygon(index));
     }
 }
 

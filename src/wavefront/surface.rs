@@ -4,7 +4,9 @@
 //! numbers, and rounded once. A point is put back onto its primitive rather than taken as origin + t·direction.
 
 use super::column::{Column, widen_vector};
-use super::queue::{HitQueue, NormalQueue, RadianceQueue, RadianceRecord, RayQueue, SurfaceQueue};
+use super::queue::{
+    DepartureQueue, HitQueue, NormalQueue, RadianceQueue, RadianceRecord, RayQueue, SurfaceQueue,
+};
 use super::statistics::Work;
 use crate::lanes::{Double, Lanes, Mask, Vector};
 use crate::prepare::bvh::Kind;
@@ -66,8 +68,8 @@ impl Sorted {
 pub(super) struct Batch<'a> {
     pub(super) first: usize,
     pub(super) rays: &'a RayQueue,
-    /// Where the rays start; empty for primary rays.
-    pub(super) departures: &'a [u32],
+    /// Where the rays start; none for primary rays.
+    pub(super) departures: Option<&'a DepartureQueue>,
     pub(super) hits: &'a HitQueue,
 }
 
@@ -194,7 +196,11 @@ fn gather_rays<D: Double>(batch: &Batch<'_>, chunk: &[HitRow]) -> [Vector<D>; 2]
         let ([ox, oy, oz], [dx, dy, dz]) = (&batch.rays.origin, &batch.rays.direction);
         [at(ox), at(oy), at(oz), at(dx), at(dy), at(dz)]
     });
-    [Vector::new(ox, oy, oz), Vector::new(dx, dy, dz)]
+    let (origin, direction) = (Vector::new(ox, oy, oz), Vector::new(dx, dy, dz));
+    let Some(departures) = batch.departures else { return [origin, direction] };
+    let [x, y, z] =
+        gather::<D, 3>(chunk, |row| departures.origin_low.each_ref().map(|column| column[row.ray as usize]));
+    [origin + Vector::new(x, y, z), direction]
 }
 
 /// The root of the quadratic (see `kernel::sphere`) that the kernel chose, in f64; for a ray that starts on this sphere the
@@ -205,7 +211,7 @@ fn spheres<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRo
         let sphere = &prepared.scene.geometry.spheres[row.index as usize];
         let [x, y, z] = prepared.scale.position(sphere.center).to_array();
         let ray = row.ray as usize;
-        let is_own = batch.departures.get(ray).is_some_and(|departure| departure >> 1 == row.id);
+        let is_own = batch.departures.is_some_and(|departures| departures.departure[ray] >> 1 == row.id);
         let t = batch.hits.t[ray - batch.first];
         [x, y, z, prepared.scale.length(sphere.radius), t, f32::from(u8::from(is_own))]
     });

@@ -236,7 +236,7 @@ impl<'a> Worker<'a> {
     fn surface<D: Double>(&mut self, depth: usize, first: usize) {
         let prepared = self.prepared;
         let (level, scratch) = (&mut self.levels[depth], &mut self.scratch);
-        let departures = if depth == 0 { &[][..] } else { &level.departures.departure[..] };
+        let departures = (depth > 0).then_some(&level.departures);
         let batch = Batch { first, rays: &level.rays, departures, hits: &scratch.hits };
         self.statistics.timed(depth, Stage::Surface, |work| {
             let (sorted, surfaces, normals) =

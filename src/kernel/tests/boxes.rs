@@ -100,7 +100,7 @@ proptest! {
         let normal = crate::scene::polygon_normal(&corners).unwrap_or(DVec3::Z);
         let plane = [corners[0], normal].map(|vector| Vector::splat(vector.as_vec3().to_array()));
         let corner_ts = [outline.least_z * space.t_per_z, outline.largest_z * space.t_per_z];
-        let found = polygon::meet_plane([line.origin, line.direction], plane, corner_ts, 0.0);
+        let found = polygon::meet_plane(&line, plane, corner_ts, 0.0);
         if outline.odd && found.meets && found.t > 0.0 {
             enters(&ray, bounds_of(&corners))?;
         }

@@ -82,7 +82,7 @@ fn meet_plane(ray: &Sight, corners: &[DVec3]) -> polygon::Meeting<f32> {
     let outline = outline(ray, corners);
     let corner_ts = [outline.least_z * space.t_per_z, outline.largest_z * space.t_per_z];
     let plane = [corners[0], newell(corners)].map(|vector| Vector::splat(vector.as_vec3().to_array()));
-    polygon::meet_plane([line.origin, line.direction], plane, corner_ts, 0.0)
+    polygon::meet_plane(&line, plane, corner_ts, 0.0)
 }
 
 proptest! {

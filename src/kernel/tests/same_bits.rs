@@ -77,7 +77,7 @@ fn answers<F: Single>(pairs: &[Pair]) -> Vec<(&'static str, [u32; MOST])> {
     }
     let corner_ts = [outline.least_z * space.t_per_z, outline.largest_z * space.t_per_z];
     let plane = [points[0], points[1].cross(points[2])];
-    let meeting = polygon::meet_plane([line.origin, line.direction], plane, corner_ts, zero);
+    let meeting = polygon::meet_plane(&line, plane, corner_ts, zero);
     answers.push(("polygon odd", truth(outline.odd)));
     answers.push(("polygon least z", number(outline.least_z)));
     answers.push(("polygon largest z", number(outline.largest_z)));

@@ -55,6 +55,7 @@ pub(crate) fn space<L: Lanes<Scalar = f32>>(rays: &[Sight]) -> RaySpace<L> {
     let t_per_z = L::splat(1.0) / z;
     RaySpace {
         origin: axes.map(|axis| lanes(rays, |ray| ray.origin[axis])),
+        origin_low: None,
         shear: [x * t_per_z, y * t_per_z],
         t_per_z,
     }
@@ -63,7 +64,13 @@ pub(crate) fn space<L: Lanes<Scalar = f32>>(rays: &[Sight]) -> RaySpace<L> {
 pub(crate) fn line<L: Lanes<Scalar = f32>>(rays: &[Sight]) -> Line<L> {
     let direction: Vector<L> = vectors(rays, |ray| ray.direction);
     let a = direction.dot(direction);
-    Line { origin: vectors(rays, |ray| ray.origin), direction, a, inverse_a: L::splat(1.0) / a }
+    Line {
+        origin: vectors(rays, |ray| ray.origin),
+        origin_low: None,
+        direction,
+        a,
+        inverse_a: L::splat(1.0) / a,
+    }
 }
 
 pub(crate) fn slabs<L: Lanes<Scalar = f32>>(rays: &[Sight], extent: f32) -> Slabs<L> {

@@ -68,7 +68,7 @@ impl Packet {
         counts: &mut Counts,
     ) {
         let block = &hierarchy.triangles[index];
-        let (space, padding) = (self.space::<F>(row), F::load(&self.padding[row..]));
+        let (space, padding) = (self.space::<F, DEPARTING>(row), F::load(&self.padding[row..]));
         for lane in 0..BLOCK {
             let id = block.ids[lane];
             if id == NOTHING {
@@ -84,10 +84,16 @@ impl Packet {
             };
             let vertices = [corner(a), corner(b), corner(c)];
             let start = self.start::<F, DEPARTING>(row, id);
-            let sizes = [F::splat(block.slack[lane]), F::splat(block.error_area[lane])];
+            let sizes = [F::splat(block.size[lane]), F::splat(block.error_area[lane])];
             let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
             counts.triangles.add(F::WIDTH, used);
-            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::triangle(index, lane), id));
+            self.offer::<F, DEPARTING, ANY>(
+                hierarchy,
+                row,
+                &candidate,
+                mask,
+                (Spot::triangle(index, lane), id),
+            );
         }
     }
 
@@ -101,7 +107,7 @@ impl Packet {
         counts: &mut Counts,
     ) {
         let block = &hierarchy.spheres[index];
-        let (line, padding) = (self.line::<F>(row), F::load(&self.padding[row..]));
+        let (line, padding) = (self.line::<F, DEPARTING>(row), F::load(&self.padding[row..]));
         for lane in 0..BLOCK {
             let id = block.ids[lane];
             if id == NOTHING {
@@ -115,7 +121,13 @@ impl Packet {
             let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
             let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
             counts.spheres.add(F::WIDTH, used);
-            self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::sphere(index, lane), id));
+            self.offer::<F, DEPARTING, ANY>(
+                hierarchy,
+                row,
+                &candidate,
+                mask,
+                (Spot::sphere(index, lane), id),
+            );
         }
     }
 
@@ -133,7 +145,7 @@ impl Packet {
             return;
         }
         let zero = F::splat(0.0);
-        let space = self.space::<F>(row);
+        let space = self.space::<F, DEPARTING>(row);
         let first = face.first_corner as usize;
         let [x, y, z] = self.axes.map(|axis| &hierarchy.corners[axis][..]);
         let corner = |index: usize| space.see([F::splat(x[index]), F::splat(y[index]), F::splat(z[index])]);
@@ -141,27 +153,32 @@ impl Packet {
         let mut from = corner(first);
         for index in first + 1..=first + face.edges as usize {
             let to = corner(index);
-            outline.add_edge(&from, &to, zero);
+            if DEPARTING {
+                outline.add_edge_with_doubt(&from, &to, F::splat(face.size), mask, zero);
+            } else {
+                outline.add_edge(&from, &to, zero);
+            }
             from = to;
         }
         counts.polygons.calls += u64::from(face.edges);
         counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
         counts.polygons.used += u64::from(face.edges) * used as u64;
-        if !DEPARTING && !(outline.odd & mask).any() {
+        if !((outline.odd | outline.unclear) & mask).any() {
             return;
         }
-        let view = View { space, line: self.line(row), padding: F::load(&self.padding[row..]) };
+        let view =
+            View { space, line: self.line::<F, DEPARTING>(row), padding: F::load(&self.padding[row..]) };
         let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
         let start = self.start::<F, DEPARTING>(row, face.id);
         let candidate =
             candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
-        self.offer::<F, ANY>(hierarchy, row, &candidate, mask, (Spot::polygon(index), face.id));
+        self.offer::<F, DEPARTING, ANY>(hierarchy, row, &candidate, mask, (Spot::polygon(index), face.id));
     }
 
     /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See [`exact`] for those
     /// lanes in which f32 cannot tell.
     #[inline(always)]
-    fn offer<F: Single, const ANY: bool>(
+    fn offer<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
         row: usize,
@@ -170,11 +187,11 @@ impl Packet {
         (spot, id): (Spot, u32),
     ) {
         let Candidate { t, error, hit, unclear } = *candidate;
-        let mut departing = (unclear & mask).bits();
-        while departing != 0 {
-            let row = row + departing.trailing_zeros() as usize;
-            departing &= departing - 1;
-            self.offer_exact::<ANY>(hierarchy, row, spot);
+        let mut unclear = (unclear & mask).bits();
+        while unclear != 0 {
+            let row = row + unclear.trailing_zeros() as usize;
+            unclear &= unclear - 1;
+            self.offer_exact::<DEPARTING, ANY>(hierarchy, row, spot);
         }
         let hit = hit & mask;
         if !hit.any() {
@@ -214,13 +231,24 @@ impl Packet {
         exact::Line::new(origin, origin_low, direction, self.departure[row])
     }
 
-    /// Takes in what a ray meets that starts next to it.
+    /// Takes in what a ray meets of a primitive for which f32 cannot tell.
     #[cold]
-    fn offer_exact<const ANY: bool>(&mut self, hierarchy: &Hierarchy, row: usize, spot: Spot) {
+    fn offer_exact<const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        row: usize,
+        spot: Spot,
+    ) {
         if self.t[row] < 0.0 {
             return;
         }
-        let Some(t) = self.exact(row).departs_to(hierarchy, spot) else { return };
+        let line = self.exact(row);
+        let found = if DEPARTING {
+            line.departs_to(hierarchy, spot)
+        } else {
+            line.meets_beyond(hierarchy, spot, self.t_min[row])
+        };
+        let Some(t) = found else { return };
         let error = t * exact::ROUNDED;
         if !self.decide::<ANY>(hierarchy, row, (t, error, spot)) {
             return;
@@ -267,18 +295,20 @@ impl Packet {
     }
 
     #[inline(always)]
-    fn space<F: Single>(&self, row: usize) -> RaySpace<F> {
+    fn space<F: Single, const DEPARTING: bool>(&self, row: usize) -> RaySpace<F> {
         RaySpace {
             origin: self.axes.map(|axis| F::load(&self.origin[axis][row..])),
+            origin_low: DEPARTING.then(|| self.axes.map(|axis| F::load(&self.origin_low[axis][row..]))),
             shear: [F::load(&self.shear[0][row..]), F::load(&self.shear[1][row..])],
             t_per_z: F::load(&self.t_per_z[row..]),
         }
     }
 
     #[inline(always)]
-    fn line<F: Single>(&self, row: usize) -> Line<F> {
+    fn line<F: Single, const DEPARTING: bool>(&self, row: usize) -> Line<F> {
         Line {
             origin: self.origin.map_lanes(row),
+            origin_low: DEPARTING.then(|| self.origin_low.map_lanes(row)),
             direction: self.direction.map_lanes(row),
             a: F::load(&self.a[row..]),
             inverse_a: F::load(&self.inverse_a[row..]),

@@ -40,8 +40,12 @@ impl Query {
     /// Every hit at `t_min` < t: t as the kernel has it, how far it may be off, and where.
     fn hits<const DEPARTING: bool>(&self, hierarchy: &Hierarchy) -> Vec<(f32, f32, Spot)> {
         let rays = [self.sight];
-        let (space, line) = (sight::space::<f32>(&rays), sight::line::<f32>(&rays));
         let axes = self.sight.axes();
+        let (mut space, mut line) = (sight::space::<f32>(&rays), sight::line::<f32>(&rays));
+        if DEPARTING {
+            space.origin_low = Some(axes.map(|axis| self.origin_low[axis]));
+            line.origin_low = Some(Vector::splat(self.origin_low));
+        }
         let farthest = self.sight.origin.into_iter().fold(0.0, |a: f32, b| a.max(b.abs()));
         let padding = (hierarchy.extent + farthest) * PADDING;
         let start = |id: u32| Start::<f32> {
@@ -52,7 +56,12 @@ impl Query {
         let mut hits = Vec::new();
         let mut offer = |candidate: Candidate<f32>, spot: Spot| {
             if candidate.unclear {
-                hits.extend(self.exact().departs_to(hierarchy, spot).map(|t| (t, t * exact::ROUNDED, spot)));
+                let found = if DEPARTING {
+                    self.exact().departs_to(hierarchy, spot)
+                } else {
+                    self.exact().meets_beyond(hierarchy, spot, self.t_min)
+                };
+                hits.extend(found.map(|t| (t, t * exact::ROUNDED, spot)));
             } else if candidate.hit {
                 hits.push((candidate.t, candidate.error, spot));
             }
@@ -72,7 +81,7 @@ impl Query {
                     let block = &hierarchy.triangles[index];
                     for (lane, &id) in block.ids.iter().enumerate().filter(|(_, id)| **id != NOTHING) {
                         let corners = block.vertices.map(|corner| axes.map(|axis| corner[axis][lane]));
-                        let sizes = [block.slack[lane], block.error_area[lane]];
+                        let sizes = [block.size[lane], block.error_area[lane]];
                         let found =
                             candidate::triangle::<f32, DEPARTING>(&space, padding, corners, sizes, start(id));
                         offer(found, Spot::triangle(index, lane));
@@ -97,7 +106,12 @@ impl Query {
                         };
                         let mut outline = Outline::<f32>::new();
                         for edge in 0..face.edges {
-                            outline.add_edge(&corner(edge), &corner(edge + 1), 0.0);
+                            let (from, to) = (corner(edge), corner(edge + 1));
+                            if DEPARTING {
+                                outline.add_edge_with_doubt(&from, &to, face.size, true, 0.0);
+                            } else {
+                                outline.add_edge(&from, &to, 0.0);
+                            }
                         }
                         let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
                         let view = View { space, line, padding };

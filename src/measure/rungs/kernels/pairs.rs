@@ -221,7 +221,7 @@ pub(super) fn left(rays: &Rays<'_>, row: usize) -> u32 {
 }
 
 fn sphere_pair(ray: &SingleRay, center: [f32; 3], radius: f32) -> SpherePair {
-    let line = ray.line::<f32>();
+    let line = ray.line::<f32, false>();
     let ([ox, oy, oz], [dx, dy, dz]) = (array(line.origin), array(line.direction));
     let [cx, cy, cz] = center;
     [ox, oy, oz, dx, dy, dz, line.a, line.inverse_a, cx, cy, cz, radius]
@@ -229,7 +229,8 @@ fn sphere_pair(ray: &SingleRay, center: [f32; 3], radius: f32) -> SpherePair {
 
 /// Vertices in the world's order of axes.
 pub(super) fn triangle_pair(ray: &SingleRay, vertices: [[f32; 3]; 3]) -> TrianglePair {
-    let (space, direction, axes) = (ray.space::<f32>(), array(ray.line::<f32>().direction), ray.axes());
+    let (space, direction, axes) =
+        (ray.space::<f32, false>(), array(ray.line::<f32, false>().direction), ray.axes());
     let turned = |point: [f32; 3]| axes.map(|axis| point[axis]);
     let ([ox, oy, oz], [dx, dy, dz], [shear_x, shear_y]) = (space.origin, turned(direction), space.shear);
     let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = vertices.map(turned);

@@ -76,6 +76,7 @@ impl lanes::Job for Test<'_> {
 fn load<F: Single>(lane: &Lane<'_, 12>) -> (Line<F>, Vector<F>, F) {
     let line = Line {
         origin: Vector::new(lane.load(0), lane.load(1), lane.load(2)),
+        origin_low: None,
         direction: Vector::new(lane.load(3), lane.load(4), lane.load(5)),
         a: lane.load(6),
         inverse_a: lane.load(7),

@@ -65,6 +65,7 @@ impl lanes::Job for Test<'_> {
             Formula::Engines => pairs.test(tiles, ts, |lane| {
                 let space = RaySpace {
                     origin: [lane.load(0), lane.load(1), lane.load(2)],
+                    origin_low: None,
                     shear: [lane.load(6), lane.load(7)],
                     t_per_z: lane.load(8),
                 };
