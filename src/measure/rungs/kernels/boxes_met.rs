@@ -103,7 +103,7 @@ struct Ray {
 
 impl Ray {
     fn new(hierarchy: &Hierarchy, ray: &SingleRay) -> Self {
-        let line = ray.line::<f32>();
+        let line = ray.line::<f32, false>();
         let line = [array(line.origin), array(line.direction)];
         let farthest = line[0]
             .into_iter()

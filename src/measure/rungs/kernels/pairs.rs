@@ -239,7 +239,8 @@ pub(super) fn triangle_pair(ray: &SingleRay, vertices: [[f32; 3]; 3]) -> Triangl
 
 impl PolygonPair {
     pub(super) fn new(hierarchy: &Hierarchy, ray: &SingleRay, polygon: usize) -> Self {
-        let (space, line, face) = (ray.space::<f32>(), ray.line::<f32>(), &hierarchy.polygons[polygon]);
+        let (space, line, face) =
+            (ray.space::<f32, false>(), ray.line::<f32, false>(), &hierarchy.polygons[polygon]);
         let ([ox, oy, oz], [dx, dy, dz]) = (array(line.origin), array(line.direction));
         let ([shear_x, shear_y], [px, py, pz], [nx, ny, nz]) = (space.shear, face.point, face.normal);
         let head = [ox, oy, oz, dx, dy, dz, shear_x, shear_y, space.t_per_z, px, py, pz, nx, ny, nz];

@@ -2,6 +2,7 @@
 
 use super::outlines::{Lane, Outlines};
 use crate::kernel::polygon::{self, Outline};
+use crate::kernel::sphere::Line;
 use crate::kernel::textbook::axis_polygon;
 use crate::kernel::{RaySpace, axes_from};
 use crate::lanes::{self, Mask, Single, Vector, Width};
@@ -67,6 +68,7 @@ fn engines<F: Single>(lane: &Lane<'_>) -> (F, F::Mask) {
     let [x, y, z] = axes_from(lane.shape().third);
     let space = RaySpace {
         origin: [lane.load(x), lane.load(y), lane.load(z)],
+        origin_low: None,
         shear: [lane.load(6), lane.load(7)],
         t_per_z: lane.load(8),
     };
@@ -83,7 +85,10 @@ fn engines<F: Single>(lane: &Lane<'_>) -> (F, F::Mask) {
         }
     }
     let corner_ts = [outline.least_z * space.t_per_z, outline.largest_z * space.t_per_z];
-    let meeting = polygon::meet_plane(line(lane), plane(lane), corner_ts, zero);
+    let [origin, direction] = line(lane);
+    // Of a line the plane takes no more than these.
+    let line = Line { origin, origin_low: None, direction, a: zero, inverse_a: zero };
+    let meeting = polygon::meet_plane(&line, plane(lane), corner_ts, zero);
     (meeting.t, outline.odd & meeting.meets & meeting.t.gt(zero))
 }
 
