@@ -35,6 +35,8 @@ mod surface;
 mod tiles;
 mod trail;
 mod tree;
+#[cfg(test)]
+mod twofold;
 mod worker;
 
 pub use explain::{Explanation, HierarchyPlan, StagePlan};

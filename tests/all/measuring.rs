@@ -98,6 +98,10 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
     assert_eq!(kinds, ["primary", "shadow", "reflect", "refract"]);
     for kernels in rungs["kernels"].as_array().unwrap() {
         for (primitive, formulas) in [("boxes", 3), ("sphere", 3), ("triangle", 2), ("polygon", 2)] {
+            if (primitive, &kernels["rays"]) == ("polygon", &serde_json::json!("refract")) {
+                assert!(kernels[primitive].is_null(), "no refracted ray has one before it: {kernels}");
+                continue;
+            }
             let formulas_found = kernels[primitive]["formulas"].as_array().unwrap();
             assert_eq!(formulas_found.len(), formulas, "{kernels}");
             for formula in formulas_found {
@@ -167,8 +171,8 @@ fn the_rungs_say_how_far_they_are() {
     assert!(percents.is_sorted() && percents.len() > 5 && percents.last() == Some(&100), "{percents:?}");
     let last = of_rungs.last().unwrap();
     assert_eq!(last["steps of rungs"], last["total"]);
-    // Of each kind of rays three steps; leaks, weak rays, samples.
-    assert_eq!(last["total"], 4 * 3 + 2 + 2 + 3);
+    // Of each kind of rays five steps; leaks between triangles and polygons, corners of boxes, weak rays, samples.
+    assert_eq!(last["total"], 4 * 5 + 2 + 2 + 1 + 2 + 3);
 }
 
 #[test]

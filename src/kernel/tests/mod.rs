@@ -2,6 +2,7 @@
 //! let through whatever is hit.
 
 mod boxes;
+mod hard;
 mod polygon;
 mod same_bits;
 pub(crate) mod sight;
