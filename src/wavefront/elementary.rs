@@ -100,9 +100,11 @@ mod tests {
         ) {
             prop_assume!(x > f64::MIN_POSITIVE);
             let exponent = Twofold::ln(x) * Twofold::from(y);
-            prop_assume!(exponent.0 > -700.0);
-            let off = exponent.exp().relative_error(pow(x, y));
-            prop_assert!(off <= (3.0 + 10.0 * exponent.0.abs()) * U, "off by {} of 2^-53", off / U);
+            // Below, all of it is 0.
+            if exponent.0 > -700.0 {
+                let off = exponent.exp().relative_error(pow(x, y));
+                prop_assert!(off <= (3.0 + 10.0 * exponent.0.abs()) * U, "off by {} of 2^-53", off / U);
+            }
         }
     }
 }

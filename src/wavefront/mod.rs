@@ -39,7 +39,7 @@ mod tree;
 mod twofold;
 mod worker;
 
-pub use explain::{Explanation, HierarchyPlan, StagePlan};
+pub use explain::{AccuracyPlan, Explanation, HierarchyPlan, StagePlan};
 pub use queue::{ColumnPlan, QueuePlan};
 pub use report::{Counters, LanesReport, MemoryReport, StageReport, StageTotal, WavefrontReport};
 pub(crate) use statistics::Statistics;

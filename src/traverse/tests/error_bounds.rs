@@ -8,6 +8,7 @@ use crate::kernel::tests::sight::Sight;
 use crate::kernel::tests::single;
 use crate::prepare::Prepared;
 use crate::scene::{Geometry, MaterialId, polygon_normal};
+use crate::traverse::exact::ROUNDED;
 use glam::{DVec3, Vec3};
 
 /// t and its error as the engine has them, and the true t, of the one primitive of a scene; none where f32 does not decide that it
@@ -24,19 +25,25 @@ fn candidate(
     let sight = Sight::new(scale * origin, direction.normalize());
     let hits = Query::new(sight).hits::<false>(&prepared.hierarchy);
     let &[(t, error, _)] = &hits[..] else { return None };
+    // What f64 has decided has no more than its own rounding.
+    if error == t * ROUNDED {
+        return None;
+    }
     Some([f64::from(t), f64::from(error), truth(&sight, scale)])
 }
 
-/// Where a ray meets a face, not before its corners or beyond them.
+/// Where a ray meets a face's plane, but not before the face's box or beyond it: what is compared where bounds overlap.
 fn truth_of_face(corners: &[Vec3]) -> impl Fn(&Sight, f64) -> f64 {
     let corners: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
     let normal = polygon_normal(&corners).unwrap_or(DVec3::Z);
+    let low = corners.iter().copied().reduce(DVec3::min).unwrap();
+    let high = corners.iter().copied().reduce(DVec3::max).unwrap();
     move |sight, scale| {
-        let (o, d, third) = (sight.o(), sight.d(), sight.third());
-        let ts = corners.iter().map(|&corner| (scale * corner - o)[third] / d[third]);
-        let (low, high) =
-            ts.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(t), high.max(t)));
-        (normal.dot(scale * corners[0] - o) / normal.dot(d)).clamp(low, high)
+        let (o, d) = (sight.o(), sight.d());
+        let t = normal.dot(scale * corners[0] - o) / normal.dot(d);
+        let [one, other] = [low, high].map(|plane| (scale * plane - o) / d);
+        let (enter, leave) = (one.min(other).max_element(), one.max(other).min_element());
+        t.min(leave).max(enter)
     }
 }
 
