@@ -160,3 +160,79 @@ fn a_shape_on_a_large_one_is_seen_whole_and_not_shadowed_by_it() {
 fn tells_apart(engine: &str, size: f64) -> bool {
     engine == "reference" || size < 1e6
 }
+
+/// A sphere, a triangle and a square that are nearly all that there is, seen from so near above that f32 cannot tell on which
+/// side of them the eye is.
+#[test]
+fn the_ground_is_seen_from_close_above_however_large_it_is() {
+    for (size, height) in [(1e4, 0.01), (1e6, 1.0), (1e6, 0.01), (1e7, 0.01), (1e9, 1.0)] {
+        let grounds = [
+            format!("[[sphere]]\ncenter = [0, -{size}, 0]\nradius = {size}\n"),
+            format!(
+                "[[triangle]]\nvertices = [[-{size}, 0, -{size}], [{size}, 0, -{size}], [0, 0, {size}]]\n"
+            ),
+            format!(
+                "[[polygon]]\nvertices = [[-{size}, 0, -{size}], [{size}, 0, -{size}], [{size}, 0, {size}], [-{size}, 0, {size}]]\n"
+            ),
+        ];
+        for ground in grounds {
+            // All rays fall steeply enough to meet the sphere as they meet the plane that touches it.
+            let pictures = pictures(&format!(
+                "[image]\nsize = [64, 64]\nbackground = 1\n[camera]\neye = [0.3, {height}, -{height}]\ntarget = [0.3, 0, 0]\nup = [0, 1, 0]\nfov = 60\n\
+                 [[light]]\ndirection = [0, -1, 0]\n[material.m]\ndiffuse = 0.5\n{ground}material = \"m\"\n"
+            ));
+            for (engine, image) in pictures {
+                let wrong = image.pixels.iter().filter(|pixel| (pixel[0] - 0.5).abs() > 1e-3).count();
+                assert_eq!(wrong, 0, "{engine}, from {height} above\n{ground}");
+            }
+        }
+    }
+}
+
+/// A closed room, seen from inside at 1/100 of a degree a pixel where two walls meet, with a light outside that shines along
+/// one of them: shadow rays start next to the edge and pass it closely.
+#[test]
+fn no_light_comes_through_the_inner_edge_of_a_room() {
+    // Three times a rotation, in whole numbers: the four corners of a wall lie in a plane.
+    let turn = glam::Mat3::from_cols_array(&[2.0, 1.0, 2.0, -2.0, 2.0, 1.0, 1.0, 2.0, -2.0]);
+    let corners: [Vec3; 8] = std::array::from_fn(|at| {
+        turn * Vec3::from([0, 1, 2].map(|axis| if at >> axis & 1 == 1 { 1.0 } else { -1.0 }))
+    });
+    let walls = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let eye = turn * Vec3::new(0.1, 0.2, -0.3);
+    for (edge, light) in
+        [([5, 7], [3.0, 0.2, 0.999]), ([3, 7], [3.0, 0.999, 0.1]), ([6, 7], [0.2, 5.0, 0.99])]
+    {
+        let light = turn * Vec3::from(light);
+        let [from, to] = edge.map(|corner| corners[corner]);
+        for quads in [false, true] {
+            let walls: String = walls
+                .iter()
+                .map(|&[a, b, c, d]| match quads {
+                    true => face("polygon", &[a, b, c, d].map(|corner| corners[corner])),
+                    false => [[a, b, c], [a, c, d]]
+                        .map(|face_corners| face("triangle", &face_corners.map(|corner| corners[corner])))
+                        .concat(),
+                })
+                .collect();
+            for share in [0.1, 0.5, 0.8] {
+                let target = from.lerp(to, share).to_array();
+                let pictures = pictures(&format!(
+                    "[image]\nsize = [64, 64]\nbackground = 1\n[camera]\neye = {:?}\ntarget = {target:?}\nup = [0.1, 0.9, 0.3]\nfov = 0.64\n\
+                     [[light]]\nposition = {:?}\n[material.m]\ndiffuse = 1\n{walls}",
+                    eye.to_array(),
+                    light.to_array()
+                ));
+                for (engine, image) in pictures {
+                    let lit = image.pixels.iter().filter(|pixel| **pixel != [0.0; 3]).count();
+                    assert_eq!(lit, 0, "{engine}, quads {quads}, edge {edge:?} at {share}");
+                }
+            }
+        }
+    }
+}
+
+fn face(kind: &str, corners: &[Vec3]) -> String {
+    let corners: Vec<String> = corners.iter().map(|corner| format!("{:?}", corner.to_array())).collect();
+    format!("[[{kind}]]\nvertices = [{}]\nmaterial = \"m\"\n", corners.join(", "))
+}
