@@ -122,7 +122,9 @@ mod tests {
             let ior = f64::from(ior);
             // What enters has been turned to this side: of unit vectors, so that the law holds for what is tested.
             let (direction, normal) = (direction.normalize(), normal.normalize());
-            prop_assume!(direction.dot(normal) < 0.0);
+            if direction.dot(normal) >= 0.0 {
+                return Ok(()); // what is grazing may be turned away by rounding, and is given another normal
+            }
             let boundary = Boundary::new(lanes(direction), lanes(normal), ior, entering);
             let ratio = if entering { 1.0 / ior } else { ior };
             let sine = ratio * direction.cross(normal).length();
