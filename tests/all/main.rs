@@ -8,6 +8,7 @@
 
 mod agreement;
 mod bad_input;
+mod bounds;
 mod certified;
 mod command_line;
 mod example_scenes;

@@ -2,6 +2,7 @@
 //! truth, and boxes that let through whatever is hit.
 
 mod boxes;
+mod hard;
 mod polygon;
 mod same_bits;
 pub(crate) mod sight;
