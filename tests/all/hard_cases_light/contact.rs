@@ -123,7 +123,7 @@ impl Contact {
             }
             Caster::Triangle => {
                 let at = point + l * (gap / l.z);
-                let corners = TRIANGLE.map(|corner| corner.as_dvec3());
+                let corners = TRIANGLE.map(Vec3::as_dvec3);
                 (0..3).all(|index| {
                     let (from, to) = (corners[index], corners[(index + 1) % 3]);
                     (to - from).normalize().cross(at - from).z > -more
