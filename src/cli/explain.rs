@@ -5,7 +5,7 @@ use crate::lanes::{Isa, Width};
 use crate::load;
 use crate::prepare::Prepared;
 use crate::render::RenderError;
-use crate::wavefront::{Explanation, QueuePlan};
+use crate::wavefront::{AccuracyPlan, Explanation, QueuePlan};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -70,6 +70,12 @@ fn describe(explanation: &Explanation, text: &mut String) -> std::fmt::Result {
         hierarchy.cost
     )?;
     writeln!(text, "lanes: {} of f32 ({})", Width::BEST.lanes(), Isa::BUILT_FOR)?;
+    let AccuracyPlan { tests, undecided, surfaces, .. } = explanation.accuracy;
+    writeln!(
+        text,
+        "accuracy: tests in {tests}, {undecided} where {tests} cannot tell, what follows a hit in {surfaces}; the same for every \
+         scene, since there is one kernel for each kind of primitive"
+    )?;
     writeln!(text, "\nstages, for a batch of {} rays:", explanation.batch)?;
     for stage in &explanation.stages {
         writeln!(text, "{}", format!("  {:<11} {}", stage.stage, stage.kernels.join(", ")).trim_end())?;

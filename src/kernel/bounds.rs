@@ -18,8 +18,8 @@ pub(crate) struct Slabs<L> {
 
 /// By how much boxes are grown, as a share of the largest coordinate of the scene and of the origin.
 ///
-/// A hit lies within 6u·(|v| + |o|) of its primitive (see `triangle`, `sphere`), u = 2⁻²⁴; a plane's t is off by three
-/// roundings of a distance up to |v| + |o|. 16u covers the sum, with some to spare.
+/// Of these 16u, u = 2⁻²⁴, the test's own rounding may take 4u: one of the padded origin, and three of a plane's t. What is left,
+/// 12u, is more than the 10u within which a ray passes a primitive that its kernel finds it to hit, by proof: docs/accuracy.md.
 pub(crate) const PADDING: f32 = 16.0 * UNIT_ROUNDOFF;
 
 /// A component of the direction that is smaller than this share of the largest is taken as this share: 1/d stays finite,
@@ -28,6 +28,8 @@ pub(crate) const LEAST_COMPONENT: f32 = 1.0 / (1_u64 << 60) as f32;
 
 /// Where rays enter boxes, not below 0, and whether they are inside before `t_max`. `near` and `far` are the planes that
 /// the ray meets first and last: low and high where its component is positive, high and low where it is negative.
+///
+/// A ray that passes the box by 11.9u of the coordinates or less on each axis is let through, one that passes it by 20.1u is not.
 #[inline(always)]
 pub(crate) fn enter<L: Lanes>(
     slabs: &Slabs<L>,

@@ -81,6 +81,9 @@ pub(crate) struct Meeting<L: Lanes> {
 
 /// A plane through a point. Seen nearly edge-on it is met anywhere, but no point of the polygon is nearer or farther than
 /// all of its corners, so t is kept between theirs.
+///
+/// With L the distance of the farthest corner from the origin, the height is off by at most 5u·L and t by 10u·L / (|d|·cos θ),
+/// by proof; for an origin with a low part 6u and 11u. See docs/accuracy.md.
 #[inline(always)]
 pub(crate) fn meet_plane<L: Lanes>(
     line: &Line<L>,

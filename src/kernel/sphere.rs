@@ -37,7 +37,8 @@ pub(crate) struct Meeting<L: Lanes> {
 }
 
 /// |o + t·d − c|² = r². The discriminant is taken as r² − l² with l the distance of the centre from the line, since
-/// b² − 4ac loses the radius of a sphere far away: |δl| ≤ 6u·|o − c|. Source: Hearn and Baker, "Computer Graphics with
+/// b² − 4ac loses the radius of a sphere far away: |δl| ≤ 6u·|o − c| for a radius above 32u·|o − c|, and the middle of the chord
+/// is off by at most 8u·|o − c|, by proof (docs/accuracy.md). Source: Hearn and Baker, "Computer Graphics with
 /// OpenGL", as used in Haines, Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray
 /// Tracing Gems, 2019.
 #[inline(always)]

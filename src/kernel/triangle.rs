@@ -23,8 +23,8 @@ pub(crate) struct Meeting<L: Lanes> {
 /// Seen along the ray, the triangle is hit where its signed areas to the ray's foot are all of one sign. Where one of them is
 /// 0 the edges decide as those of a polygon do, see [`crosses`], which is the same question: all faces that meet at an edge or
 /// at a corner answer it from the same numbers, and however these are rounded, a closed surface is crossed an even number of
-/// times. t is the mean of the vertices' t by these areas, so it never lies outside of theirs: |δt| ≤ 6u·(L + s²/h)/cos θ by measurement, with L the
-/// largest distance of a vertex from the origin, s the longest edge and h the height above it, which matters for needles
+/// times. t is the mean of the vertices' t by these areas, so it never lies outside of theirs: |δt| ≤ 6u·(L + s²/h)/cos θ by measurement, 23u·L and
+/// 18u·s²/h over cos θ by proof (docs/accuracy.md), with L the largest distance of a vertex from the origin, s the longest edge and h the height above it, which matters for needles
 /// (Woop, Benthin and Wald 2013; see [`RaySpace`]).
 ///
 /// Vertices are in the ray's order of axes.

@@ -4,6 +4,7 @@ use super::certainty::{self, Stretches};
 use super::precision::Precision;
 use super::ray::Ray;
 use super::shape;
+use crate::scene::polygon_normal;
 use glam::DVec3;
 
 /// Where a ray's half-line t > 0 meets a primitive, in truth.
@@ -49,6 +50,19 @@ impl PairTruth {
         let farthest = vertices.iter().map(|vertex| vertex.distance(origin)).fold(0.0, f64::max);
         let approach = normal.dot(direction).abs();
         let stretches = certainty::outline(&unit(&ray), &vertices, normal);
+        Self::new(t, None, Precision::ROUNDING * farthest / approach, stretches)
+    }
+
+    /// Corners in the order of the outline, three or more, not all on a line.
+    pub(crate) fn of_polygon([origin, direction]: [[f32; 3]; 2], corners: &[[f32; 3]]) -> Self {
+        let [origin, direction] = [origin, direction].map(wide);
+        let corners: Vec<DVec3> = corners.iter().copied().map(wide).collect();
+        let ray = Ray::new(origin, direction, None);
+        let normal = polygon_normal(&corners).unwrap_or(DVec3::Z);
+        let t = shape::polygon(&ray, &corners, normal).filter(|&t| t > 0.0);
+        let farthest = corners.iter().map(|corner| corner.distance(origin)).fold(0.0, f64::max);
+        let approach = normal.dot(direction).abs();
+        let stretches = certainty::outline(&unit(&ray), &corners, normal);
         Self::new(t, None, Precision::ROUNDING * farthest / approach, stretches)
     }
 
@@ -125,5 +139,22 @@ mod tests {
         assert_eq!((from(0.8, 3.0).t, from(0.8, 3.0).decision_is_certain), (None, true));
         assert_eq!((from(0.25, -3.0).t, from(0.25, -3.0).decision_is_certain), (None, true));
         assert!(!from(0.75, 3.0).decision_is_certain, "on an edge");
+    }
+
+    #[test]
+    fn polygons_are_met_inside_their_outline_however_it_turns() {
+        // An L: the square without its upper right quarter.
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
+        let corners = corners.map(|[x, y]: [f32; 2]| [x, y, 0.0]);
+        let at = |x: f32, y: f32| {
+            let truth = PairTruth::of_polygon([[x, y, 3.0], DOWN], &corners);
+            (truth.t, truth.decision_is_certain)
+        };
+        assert_eq!([at(-0.5, 0.5), at(0.5, -0.5)], [(Some(1.5), true); 2]);
+        assert_eq!(at(0.5, 0.5), (None, true));
+        assert!(!at(0.5, 0.0).1, "on an edge");
+        let farthest = 11.0_f64.sqrt();
+        let truth = PairTruth::of_polygon([[0.0, 0.0, 3.0], DOWN], &corners);
+        assert!((truth.t_per_rounding / (farthest / f64::from(1 << 25)) - 1.0).abs() < 1e-12);
     }
 }

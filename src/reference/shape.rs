@@ -255,7 +255,7 @@ pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> 
 /// The polygon is projected along the ray rather than along a coordinate axis. Both keep inside and outside, but axis
 /// by axis each face rounds its own hit point, and rays aimed at the edge of a closed solid get out between two faces;
 /// seen along the ray two faces share the very numbers of their common edge.
-fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f64> {
+pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f64> {
     let mut inside = false;
     let (mut low_t, mut high_t) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut from = ray.project(vertices[vertices.len() - 1]);

@@ -4,7 +4,7 @@ use super::Compared;
 use super::figures::{HIT_ERRORS, SPEED_BY_KIND, SPEED_OVER_ERROR};
 use super::html::GENERATOR;
 use super::page::{ENGINE, ENGINE_ERROR, FLOOR_ERROR, Page, TRUTH};
-use super::rung_figures::{SAMPLES, SPHERE_FORMULAS, TRIANGLE_FORMULAS, WEAK_RAYS};
+use super::rung_figures::{POLYGON_FORMULAS, SAMPLES, SPHERE_FORMULAS, TRIANGLE_FORMULAS, WEAK_RAYS};
 use crate::film::{self, BitDepth, FilmError};
 use crate::measure::ComparedImages;
 use crate::whole_file;
@@ -16,7 +16,7 @@ use thiserror::Error;
 const PAGE: &str = "index.html";
 const DATA: &str = "comparison.json";
 /// All that is ever written.
-const FILES: [&str; 13] = [
+const FILES: [&str; 14] = [
     PAGE,
     DATA,
     SPEED_OVER_ERROR,
@@ -24,6 +24,7 @@ const FILES: [&str; 13] = [
     HIT_ERRORS,
     SPHERE_FORMULAS,
     TRIANGLE_FORMULAS,
+    POLYGON_FORMULAS,
     WEAK_RAYS,
     SAMPLES,
     TRUTH,

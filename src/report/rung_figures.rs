@@ -11,19 +11,22 @@ use crate::rays::RayKind;
 
 pub(super) const SPHERE_FORMULAS: &str = "sphere-formulas.svg";
 pub(super) const TRIANGLE_FORMULAS: &str = "triangle-formulas.svg";
+pub(super) const POLYGON_FORMULAS: &str = "polygon-formulas.svg";
 pub(super) const WEAK_RAYS: &str = "weak-rays.svg";
 pub(super) const SAMPLES: &str = "samples.svg";
 
 /// A plot for each rung that the scene has.
 pub(super) fn rung_figures(rungs: &Rungs) -> Result<Vec<Figure>, PlotError> {
     let primary = rungs.kernels.iter().find(|kernels| kernels.rays == RayKind::Primary);
-    let sphere = primary.and_then(|kernels| kernels.sphere.as_ref());
-    let triangle = primary.and_then(|kernels| kernels.triangle.as_ref());
     let mut figures = vec![];
-    figures.extend(sphere.map(|rung| formulas(SPHERE_FORMULAS, rung, None)).transpose()?.flatten());
-    figures.extend(
-        triangle.map(|rung| formulas(TRIANGLE_FORMULAS, rung, rungs.leaks.as_ref())).transpose()?.flatten(),
-    );
+    for rung in primary.iter().flat_map(|kernels| kernels.primitives()) {
+        let (file, leaks) = match rung.primitive {
+            "sphere" => (SPHERE_FORMULAS, None),
+            "triangle" => (TRIANGLE_FORMULAS, rungs.leaks.as_ref()),
+            _ => (POLYGON_FORMULAS, rungs.polygon_leaks.as_ref()),
+        };
+        figures.extend(formulas(file, rung, leaks)?);
+    }
     figures.extend(weak_rays(rungs)?);
     figures.extend(samples(rungs)?);
     Ok(figures)
@@ -48,7 +51,7 @@ fn formulas(
     );
     let y = Axis::linear("time of a test (ns)", points().map(|point| point.y + point.y_spread));
     let svg = Chart { x, y, series, rules: vec![] }.draw()?;
-    let aimed = if leaks.is_some() { " Leaks are of rays aimed at what triangles share." } else { "" };
+    let aimed = if leaks.is_some() { " Leaks are of rays aimed at what they share." } else { "" };
     Ok(Some(Figure {
         file,
         svg,

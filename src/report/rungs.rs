@@ -4,15 +4,15 @@ use super::block::Block;
 use super::table::{NONE, Table, maybe, median, number};
 use crate::measure::Percentiles;
 use crate::measure::rungs::Rungs;
-use crate::measure::rungs::kernels::{KernelRung, LeakRung};
+use crate::measure::rungs::kernels::{BoxRung, KernelRung, LeakRung};
 use crate::measure::rungs::min_weight::{MinWeightFrame, MinWeightRung};
 use crate::measure::rungs::samples::SamplesRung;
 use crate::rays::RayKind;
 
-/// Formulas, leaks, weak rays, samples; what a scene does not have is left out.
+/// Formulas, what is lost at edges and corners, weak rays, samples; what a scene does not have is left out.
 pub(crate) fn rungs(rungs: &Rungs) -> Vec<Block> {
     let mut blocks = formulas(rungs);
-    blocks.extend(rungs.leaks.iter().flat_map(leaks));
+    blocks.extend(robustness(rungs));
     blocks.extend(rungs.min_weight.iter().flat_map(weak_rays));
     blocks.extend(samples(&rungs.samples));
     blocks
@@ -39,11 +39,62 @@ fn formulas(rungs: &Rungs) -> Vec<Block> {
             .into(),
     )];
     for kernels in &rungs.kernels {
-        for rung in [&kernels.sphere, &kernels.triangle].into_iter().flatten() {
-            blocks.extend(formulas_of(kernels.rays, rung));
-        }
+        blocks.extend(kernels.boxes.iter().flat_map(|rung| boxes_of(kernels.rays, rung)));
+        blocks.extend(kernels.primitives().flat_map(|rung| formulas_of(kernels.rays, rung)));
     }
     blocks
+}
+
+fn boxes_of(rays: RayKind, rung: &BoxRung) -> [Block; 2] {
+    let BoxRung { lanes, pairs, true_hits, .. } = rung;
+    let words = format!(
+        "boxes, {} rays: {pairs} pairs, {lanes} lanes. True hits left out: of {true_hits}, those whose leaf's box the ray is \
+         found to miss.",
+        rays.name()
+    );
+    [Block::Words(words), Block::Table(boxes(rung))]
+}
+
+/// Without times where there are none.
+fn boxes(rung: &BoxRung) -> Table {
+    let is_timed = rung.formulas.iter().any(|run| run.seconds.is_some());
+    let times = is_timed.then_some("ns a test");
+    let heading = ["formula"].into_iter().chain(times).chain(["true hits left out", "a million"]);
+    let mut table = Table::new(1, heading);
+    for run in &rung.formulas {
+        let mut row = vec![formula_name(run.name, run.is_engines)];
+        row.extend(is_timed.then(|| maybe(rung.nanoseconds(run))));
+        row.extend([run.left_out.to_string(), per_million(run.left_out, rung.true_hits)]);
+        table.push(row);
+    }
+    table
+}
+
+fn per_million(count: u64, of: u64) -> String {
+    maybe((of > 0).then(|| count as f64 * 1e6 / of as f64))
+}
+
+/// What robustness buys where it matters.
+fn robustness(rungs: &Rungs) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    blocks.extend([&rungs.leaks, &rungs.polygon_leaks].into_iter().flatten().flat_map(leaks));
+    blocks.extend(rungs.box_corners.iter().flat_map(box_corners));
+    if !blocks.is_empty() {
+        let words = "That faces agree about their common edges, that no box hides a hit and that no surface hits itself by \
+                     rounding are no choices: the engine has them always, and these tables show what they cost and what would \
+                     be lost.";
+        blocks.push(Block::Words(words.into()));
+    }
+    blocks
+}
+
+fn box_corners(rung: &BoxRung) -> [Block; 2] {
+    let words = format!(
+        "Corners of boxes: rays from the eye aimed at corners of triangles and polygons that lie on an edge of their leaf's box; of \
+         their {} true hits, those whose leaf's box the ray is found to miss.",
+        rung.true_hits
+    );
+    [Block::Words(words), Block::Table(boxes(rung))]
 }
 
 fn formulas_of(rays: RayKind, rung: &KernelRung) -> [Block; 2] {
@@ -64,14 +115,17 @@ fn formulas_of(rays: RayKind, rung: &KernelRung) -> [Block; 2] {
         }
         table.push(row);
     }
-    let KernelRung { primitive, lanes, tested, pairs, .. } = rung;
-    let words = format!("{primitive}s, {} rays: {pairs} of {tested} pairs, {lanes} lanes", rays.name());
+    let KernelRung { primitive, lanes, tested, pairs, edges, .. } = rung;
+    let edges = edges.map_or(String::new(), |edges| {
+        format!(", of {} edges on average", number(edges as f64 / *pairs as f64))
+    });
+    let words =
+        format!("{primitive}s, {} rays: {pairs} of {tested} pairs{edges}, {lanes} lanes", rays.name());
     [Block::Words(words), Block::Table(table)]
 }
 
 fn leaks(rung: &LeakRung) -> [Block; 2] {
     let mut table = Table::new(1, ["formula", "at edges", "a million", "at corners", "a million"]);
-    let per_million = |leaks: u64, rays: u64| maybe((rays > 0).then(|| leaks as f64 * 1e6 / rays as f64));
     for leaks in &rung.formulas {
         table.push(vec![
             formula_name(leaks.name, leaks.is_engines),
@@ -82,9 +136,9 @@ fn leaks(rung: &LeakRung) -> [Block; 2] {
         ]);
     }
     let words = format!(
-        "Leaks: of {} rays aimed at edges that triangles share, and {} at corners that they lie all around, those that hit none \
-         of them.",
-        rung.edge_rays, rung.corner_rays
+        "Leaks: of {} rays aimed at edges that {}s share, and {} at corners that they lie all around, those that hit none of \
+         them.",
+        rung.edge_rays, rung.primitive, rung.corner_rays
     );
     [Block::Words(words), Block::Table(table)]
 }

@@ -76,7 +76,7 @@ impl Ray {
         }
     }
 
-    fn slabs<L: Lanes<Scalar = f32>>(&self) -> Slabs<L> {
+    pub(crate) fn slabs<L: Lanes<Scalar = f32>>(&self) -> Slabs<L> {
         Slabs {
             near_origin: Vector::splat(self.near_origin),
             far_origin: Vector::splat(self.far_origin),

@@ -28,6 +28,26 @@ pub struct Explanation {
     pub most_queue_bytes: usize,
     /// What rays walk.
     pub hierarchy: HierarchyPlan,
+    /// What is computed in which numbers.
+    pub accuracy: AccuracyPlan,
+}
+
+/// What is computed in which numbers. Nothing of it is chosen for a scene: one kernel serves each kind of primitive, since none
+/// of those that are faster is right often enough, and none that is more exact shows (docs/accuracy.md).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct AccuracyPlan {
+    /// Rays against boxes and primitives.
+    pub tests: &'static str,
+    /// Where the tests cannot tell which of two hits is nearer, or on which side of an edge or of a surface a ray is.
+    pub undecided: &'static str,
+    /// What follows a hit: its place, normals, directions and light; rounded to f32 once.
+    pub surfaces: &'static str,
+    /// Kernels that could be chosen for a kind of primitive.
+    pub kernels_to_choose_from: u32,
+}
+
+impl AccuracyPlan {
+    const ALWAYS: Self = Self { tests: "f32", undecided: "f64", surfaces: "f64", kernels_to_choose_from: 1 };
 }
 
 /// A stage that will run.
@@ -90,6 +110,7 @@ impl Explanation {
                 polygon_bytes: bytes.polygons,
                 directory_bytes: prepared.directory.bytes(),
             },
+            accuracy: AccuracyPlan::ALWAYS,
         }
     }
 }

@@ -35,9 +35,11 @@ mod surface;
 mod tiles;
 mod trail;
 mod tree;
+#[cfg(test)]
+mod twofold;
 mod worker;
 
-pub use explain::{Explanation, HierarchyPlan, StagePlan};
+pub use explain::{AccuracyPlan, Explanation, HierarchyPlan, StagePlan};
 pub use queue::{ColumnPlan, QueuePlan};
 pub use report::{Counters, LanesReport, MemoryReport, StageReport, StageTotal, WavefrontReport};
 pub(crate) use statistics::Statistics;

@@ -1,7 +1,8 @@
 //! What the surfaces are like that rays have hit: the exact place, and normals.
 //!
 //! The kernels found in f32 which primitive is nearest; here the hit is computed anew in f64, once a ray, from the same f32
-//! numbers, and rounded once. A point is put back onto its primitive rather than taken as origin + t·direction.
+//! numbers, and rounded once. A point is put back onto its primitive rather than taken as origin + t·direction: with what its
+//! rounding left out it lies within 2⁻⁴⁷ of the coordinates of it. A normal is within 2⁻²⁴ of the true one for the f32 ray.
 
 use super::column::{Column, widen_vector};
 use super::queue::{

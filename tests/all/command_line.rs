@@ -128,6 +128,8 @@ fn explain_says_what_will_run() {
     }
     let report: serde_json::Value = serde_json::from_str(&said("glass.toml", &["--json", "-"])).unwrap();
     assert_eq!((&report["plan"]["refraction"], &report["plan"]["triangles"]), (&true.into(), &0.into()));
+    assert!(glass.contains("accuracy: tests in f32, f64 where f32 cannot tell"), "{glass}");
+    assert_eq!(report["accuracy"]["kernels_to_choose_from"], 1);
     assert_exit(&wavelane(&["explain", "absent.toml"]), 3);
 }
 

@@ -97,7 +97,11 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
     let kinds: Vec<_> = rungs["kernels"].as_array().unwrap().iter().map(|of| &of["rays"]).collect();
     assert_eq!(kinds, ["primary", "shadow", "reflect", "refract"]);
     for kernels in rungs["kernels"].as_array().unwrap() {
-        for (primitive, formulas) in [("sphere", 3), ("triangle", 2)] {
+        for (primitive, formulas) in [("boxes", 3), ("sphere", 3), ("triangle", 2), ("polygon", 2)] {
+            if (primitive, &kernels["rays"]) == ("polygon", &serde_json::json!("refract")) {
+                assert!(kernels[primitive].is_null(), "no refracted ray has one before it: {kernels}");
+                continue;
+            }
             let formulas_found = kernels[primitive]["formulas"].as_array().unwrap();
             assert_eq!(formulas_found.len(), formulas, "{kernels}");
             for formula in formulas_found {
@@ -107,6 +111,7 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
         }
     }
     assert!(rungs["leaks"]["edge_rays"].as_u64().unwrap() > 0, "{}", rungs["leaks"]);
+    assert!(rungs["box_corners"]["true_hits"].as_u64().unwrap() > 0, "{}", rungs["box_corners"]);
     let frames = rungs["min_weight"]["frames"].as_array().unwrap();
     assert_eq!(
         frames[0]["rays"], found["frame_rays"],
@@ -121,6 +126,11 @@ fn compare_measures_what_accuracy_costs_where_it_is_asked_to() {
     for word in [
         "spheres, refract rays",
         "triangles, primary rays",
+        "polygons, shadow rays",
+        "boxes, reflect rays",
+        "True hits left out: of",
+        "Corners of boxes: rays",
+        "are no choices",
         "watertight, the engine's",
         "Leaks: of",
         "min_weight",
@@ -161,8 +171,8 @@ fn the_rungs_say_how_far_they_are() {
     assert!(percents.is_sorted() && percents.len() > 5 && percents.last() == Some(&100), "{percents:?}");
     let last = of_rungs.last().unwrap();
     assert_eq!(last["steps of rungs"], last["total"]);
-    // Of each kind of rays three steps; leaks, weak rays, samples.
-    assert_eq!(last["total"], 4 * 3 + 2 + 2 + 3);
+    // Of each kind of rays five steps; leaks between triangles and polygons, corners of boxes, weak rays, samples.
+    assert_eq!(last["total"], 4 * 5 + 2 + 2 + 1 + 2 + 3);
 }
 
 #[test]

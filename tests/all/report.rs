@@ -127,8 +127,14 @@ fn what_accuracy_costs_is_a_section_with_a_plot_for_each_rung_that_there_is() {
     let with_mesh = format!("{SCENE}{}{}", triangle(2.0), triangle(-1.0));
     let matte = SCENE.replace("mirror = 0.25\n", "");
     let nothing = "[image]\nsize = [8, 8]\n".to_owned();
-    let all = ["samples.svg", "sphere-formulas.svg", "triangle-formulas.svg", "weak-rays.svg"];
-    for (text, expected) in [(with_mesh, &all[..]), (matte, &all[..2]), (nothing, &[])] {
+    let all = [
+        "polygon-formulas.svg",
+        "samples.svg",
+        "sphere-formulas.svg",
+        "triangle-formulas.svg",
+        "weak-rays.svg",
+    ];
+    for (text, expected) in [(with_mesh, &all[..]), (matte, &all[..3]), (nothing, &[])] {
         let folder = Folder::new();
         let (scene, report) = (folder.write("scene.toml", text), folder.file("report"));
         assert_exit(&compare(&scene, &report, &["--rungs", "--size", "12x8"]), 0);

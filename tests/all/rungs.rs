@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use wavelane::lanes::Width;
 use wavelane::load::load;
 use wavelane::measure::rungs::RungOptions;
-use wavelane::measure::rungs::kernels::{FormulaRun, KernelRung, KernelRungs, LeakRung};
+use wavelane::measure::rungs::kernels::{BoxRung, FormulaRun, KernelRung, KernelRungs, LeakRung};
 use wavelane::measure::rungs::min_weight::MinWeightRung;
 use wavelane::measure::rungs::samples::SamplesRung;
 use wavelane::prepare::Prepared;
@@ -31,7 +31,12 @@ fn rungs_of(scene: &Scene, kind: RayKind) -> KernelRungs {
 
 fn leaks_of(scene: &Scene) -> Option<LeakRung> {
     let prepared = Prepared::new(scene).unwrap();
-    LeakRung::measure(&prepared, &options(&AtomicBool::new(false))).unwrap()
+    LeakRung::of_triangles(&prepared, &options(&AtomicBool::new(false))).unwrap()
+}
+
+fn polygon_leaks_of(scene: &Scene) -> Option<LeakRung> {
+    let prepared = Prepared::new(scene).unwrap();
+    LeakRung::of_polygons(&prepared, &options(&AtomicBool::new(false))).unwrap()
 }
 
 fn formula<'a>(rung: &'a KernelRung, name: &str) -> &'a FormulaRun {
@@ -89,10 +94,16 @@ fn still_life_has_both_rungs_and_the_engine_s_formulas_make_no_mistakes() {
     for kind in RayKind::ALL {
         let rungs = rungs_of(&scene, kind);
         assert_eq!(rungs.rays, kind);
-        for rung in [rungs.sphere.as_ref().unwrap(), rungs.triangle.as_ref().unwrap()] {
+        // Refracted rays have no polygon before them, and start on the one that is there.
+        assert_eq!(rungs.primitives().count(), if kind == RayKind::Refract { 2 } else { 3 });
+        for rung in rungs.primitives() {
             assert_engines_formula_is_right(rung);
             assert_eq!(rung.pairs, rung.tested, "so few are all played back");
         }
+        let boxes = rungs.boxes.unwrap();
+        assert!(boxes.pairs > 1000 && boxes.true_hits > 100, "{boxes:?}");
+        assert_engine_s_box_hides_nothing(&boxes);
+        assert!(boxes.formulas.iter().all(|run| boxes.nanoseconds(run).is_some_and(|time| time > 0.0)));
     }
 }
 
@@ -118,16 +129,18 @@ fn nothing_to_test_is_no_rung() {
          [[triangle]]\nvertices = [[-1, -1, 0], [1, -1, 0], [0, 1, 0]]\nmaterial = \"m\"\n",
     );
     let rungs = rungs_of(&triangle, RayKind::Primary);
-    assert!(rungs.sphere.is_none() && rungs.triangle.is_some());
+    assert!(rungs.sphere.is_none() && rungs.triangle.is_some() && rungs.polygon.is_none());
     assert!(leaks_of(&triangle).is_none(), "no edge is shared");
     let none = rungs_of(&triangle, RayKind::Reflect);
-    assert!(none.sphere.is_none() && none.triangle.is_none());
+    assert!(none.is_empty());
     let empty = scene(
         "[image]\nsize = [8, 8]\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 45\n",
     );
     let none = rungs_of(&empty, RayKind::Primary);
-    assert!(none.sphere.is_none() && none.triangle.is_none());
-    assert!(leaks_of(&empty).is_none());
+    assert!(none.is_empty());
+    assert!(leaks_of(&empty).is_none() && polygon_leaks_of(&empty).is_none());
+    let prepared = Prepared::new(&empty).unwrap();
+    assert!(BoxRung::at_corners(&prepared, &options(&AtomicBool::new(false))).unwrap().is_none());
 }
 
 #[test]
@@ -153,6 +166,100 @@ fn a_closed_mesh_leaks_by_moller_and_trumbore_s_test_and_not_by_the_engine_s() {
     for leaks in &rung.formulas {
         assert_eq!(leaks.is_engines, leaks.at_edges == 0, "{rung:?}");
         assert!(!leaks.is_engines || leaks.at_corners == 0, "{rung:?}");
+    }
+}
+
+/// A cube of squares, turned about its middle, of any size anywhere; its corners rounded to f32.
+fn cube(size: f64, middle: [f64; 3]) -> String {
+    // Three orthogonal directions that no axis is along.
+    let axes =
+        [[2.0, 3.0, 6.0], [3.0, -6.0, 2.0], [6.0, 2.0, -3.0]].map(|axis| axis.map(|part: f64| part / 7.0));
+    let corner = |signs: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|part| {
+            middle[part] + size * (0..3).map(|axis| signs[axis] * axes[axis][part]).sum::<f64>()
+        })
+    };
+    let mut text = String::new();
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[one, other]| {
+                let mut signs = [side; 3];
+                (signs[(axis + 1) % 3], signs[(axis + 2) % 3]) = (one, other);
+                corner(signs)
+            });
+            text += &format!("[[polygon]]\nvertices = {corners:?}\nmaterial = \"m\"\n");
+        }
+    }
+    text
+}
+
+fn seen_from(eye: [f64; 3], shapes: &str) -> Scene {
+    scene(&format!(
+        "[image]\nsize = [16, 16]\n[camera]\neye = {eye:?}\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 30\n[material.m]\n{shapes}"
+    ))
+}
+
+#[test]
+fn cubes_leak_where_polygons_are_projected_along_an_axis_and_not_along_the_ray() {
+    let cubes: String = (0..64_u8)
+        .map(|at| cube(0.2, [f64::from(at % 8) - 3.5, f64::from(at / 8) - 3.5, f64::from(at) / 64.0]))
+        .collect();
+    let rung = polygon_leaks_of(&seen_from([0.3, 0.2, 20.0], &cubes)).unwrap();
+    // Of each cube the nearest corner and the farthest one, and the three edges at each.
+    assert_eq!((rung.primitive, rung.edge_rays, rung.corner_rays), ("polygon", 64 * 6 * 16, 64 * 2));
+    let [along_axis, along_ray] = &rung.formulas[..] else { panic!("{rung:?}") };
+    assert!(along_ray.is_engines && (along_ray.at_edges, along_ray.at_corners) == (0, 0), "{rung:?}");
+    assert!(along_axis.at_edges > rung.edge_rays / 50 && along_axis.at_corners > 2, "{rung:?}");
+}
+
+#[test]
+fn both_formulas_for_polygons_agree_but_for_edges() {
+    // A star with two hollows beside the cube, so that outlines are concave too.
+    let star = "[[polygon]]\nvertices = [[-2, -2, 0], [2, -2, 0], [0.5, 0, 0], [2, 2, 0], [-2, 2, 0], [-0.5, 0, 0]]\n\
+                material = \"m\"\n";
+    let scene = seen_from([0.3, 0.2, 12.0], &(cube(0.8, [0.4, 0.3, 1.0]) + star));
+    let rung = rungs_of(&scene, RayKind::Primary).polygon.unwrap();
+    assert_engines_formula_is_right(&rung);
+    assert_eq!(rung.formulas.len(), 2);
+    for run in &rung.formulas {
+        assert_eq!(run.errors.mistakes(), 0, "{run:?}");
+        assert!(run.errors.hits > 50, "{run:?}");
+    }
+    assert!(rung.edges.is_some_and(|edges| edges > 4 * rung.pairs && edges < 6 * rung.pairs), "{rung:?}");
+}
+
+#[track_caller]
+fn assert_engine_s_box_hides_nothing(rung: &BoxRung) {
+    let engines: Vec<_> = rung.formulas.iter().filter(|run| run.is_engines).collect();
+    assert_eq!((engines.len(), engines[0].left_out), (1, 0), "{rung:?}");
+}
+
+/// Squares along the axes have flat boxes whose corners are theirs: rays at them enter on one axis where they leave on another.
+#[test]
+fn boxes_that_are_not_padded_hide_corners() {
+    let square = |at: u8| {
+        let [x, y, z] = [at % 5, at / 5 % 5, at / 25].map(|step| f64::from(step) * 1.37 - 2.9);
+        let [high_x, high_y] = [x + 0.4, y + 0.3];
+        format!(
+            "[[polygon]]\nvertices = [[{x}, {y}, {z}], [{high_x}, {y}, {z}], [{high_x}, {high_y}, {z}], [{x}, {high_y}, {z}]]\n\
+             material = \"m\"\n"
+        )
+    };
+    let squares: String = (0..125).map(square).collect();
+    let corners_of = |scene: &Scene| {
+        let prepared = Prepared::new(scene).unwrap();
+        BoxRung::at_corners(&prepared, &options(&AtomicBool::new(false))).unwrap().unwrap()
+    };
+    let near = corners_of(&seen_from([9.3, 8.2, 10.1], &squares));
+    // The same from ten thousand times as far: a distance along a slab has few digits of what the box is wide.
+    let far = corners_of(&seen_from([9.3e4, 8.2e4, 10.1e4], &squares));
+    for rung in [&near, &far] {
+        assert!(rung.true_hits > 50, "{rung:?}");
+        assert_engine_s_box_hides_nothing(rung);
+        for run in rung.formulas.iter().filter(|run| !run.is_engines) {
+            assert!(run.left_out > 0, "{rung:?}");
+            assert!(run.seconds.is_none() && rung.nanoseconds(run).is_none(), "{run:?}");
+        }
     }
 }
 
@@ -238,7 +345,8 @@ fn a_measurement_says_how_far_it_is_and_stops_when_told_to() {
     let stopped = |error: RenderError| matches!(error, RenderError::Stopped);
     assert!(MinWeightRung::measure(&scene, &options).is_err_and(stopped));
     assert!(SamplesRung::measure(&scene, &options).is_err_and(stopped));
-    assert!(LeakRung::measure(&prepared, &options).is_err_and(stopped));
+    assert!(LeakRung::of_triangles(&prepared, &options).is_err_and(stopped));
+    assert!(BoxRung::at_corners(&prepared, &options).is_err_and(stopped));
     let rays = RaySet::default();
     assert!(KernelRungs::measure(&prepared, RayKind::Primary, &rays, &options).is_err_and(stopped));
 }

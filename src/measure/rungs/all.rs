@@ -1,6 +1,6 @@
 //! Every rung that a scene has.
 
-use super::kernels::{KernelRungs, LeakRung};
+use super::kernels::{BoxRung, KernelRungs, LeakRung};
 use super::min_weight::MinWeightRung;
 use super::samples::SamplesRung;
 use super::{Progress, RungOptions};
@@ -16,10 +16,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// What accuracy costs on one scene, choice by choice.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rungs {
-    /// Formulas, for each kind of rays that test a sphere or a triangle.
+    /// Formulas, for each kind of rays that test anything.
     pub kernels: Vec<KernelRungs>,
     /// Rays aimed at what triangles share; none where they share nothing that can be seen.
     pub leaks: Option<LeakRung>,
+    /// Likewise for polygons.
+    pub polygon_leaks: Option<LeakRung>,
+    /// Rays aimed at corners that lie on an edge of their leaf's box; none where none does.
+    pub box_corners: Option<BoxRung>,
     /// Frames without weak rays; none where nothing is reflected or refracted.
     pub min_weight: Option<MinWeightRung>,
     /// Small pictures by their samples.
@@ -48,15 +52,17 @@ impl Rungs {
         for (place, kind) in kinds.enumerate() {
             let rungs = parts
                 .part(place, |options| KernelRungs::measure(&prepared, kind, recorded.of(kind), options))?;
-            kernels.extend(Some(rungs).filter(|rungs| rungs.sphere.is_some() || rungs.triangle.is_some()));
+            kernels.extend(Some(rungs).filter(|rungs| !rungs.is_empty()));
         }
         drop(recorded);
-        let [leaks, min_weight, samples] = parts.after_kernels();
-        let leaks = parts.part(leaks, |options| LeakRung::measure(&prepared, options))?;
+        let [leaks, polygon_leaks, box_corners, min_weight, samples] = parts.after_kernels();
+        let leaks = parts.part(leaks, |options| LeakRung::of_triangles(&prepared, options))?;
+        let polygon_leaks = parts.part(polygon_leaks, |options| LeakRung::of_polygons(&prepared, options))?;
+        let box_corners = parts.part(box_corners, |options| BoxRung::at_corners(&prepared, options))?;
         let min_weight = parts.part(min_weight, |options| MinWeightRung::measure(scene, options))?;
         let samples = parts.part(samples, |options| SamplesRung::measure(scene, options))?;
         parts.finish();
-        Ok(Self { kernels, leaks, min_weight, samples })
+        Ok(Self { kernels, leaks, polygon_leaks, box_corners, min_weight, samples })
     }
 }
 
@@ -84,15 +90,16 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn new(kinds: usize, options: &'a RungOptions<'a>) -> Self {
         let rounds = options.rounds();
-        // Collecting pairs, and rounds of spheres and of triangles; edges and corners; the truth; the truth and the error.
-        let mut steps = vec![1 + 2 * rounds; kinds];
-        steps.extend([2, 1 + rounds, 2 + rounds]);
+        // Collecting pairs, and rounds of boxes, spheres, triangles and polygons; edges and corners, of triangles and of
+        // polygons; corners of boxes; the truth; the truth and the error.
+        let mut steps = vec![1 + 4 * rounds; kinds];
+        steps.extend([2, 2, 1, 1 + rounds, 2 + rounds]);
         Self { options, steps }
     }
 
-    /// The places of leaks, weak rays and samples.
-    fn after_kernels(&self) -> [usize; 3] {
-        [3, 2, 1].map(|from_end| self.steps.len() - from_end)
+    /// The places of leaks, of triangles and of polygons, of corners of boxes, weak rays and samples.
+    fn after_kernels(&self) -> [usize; 5] {
+        [5, 4, 3, 2, 1].map(|from_end| self.steps.len() - from_end)
     }
 
     fn part<T>(&self, place: usize, measure: impl FnOnce(&RungOptions<'_>) -> T) -> T {

@@ -1,6 +1,6 @@
 //! The rungs: each choice that trades speed for accuracy, run as variants, each with its speed beside its error.
 //!
-//! - `kernels`: formulas for the tests of rays against spheres and triangles, on a frame's own rays
+//! - `kernels`: formulas for the tests of rays against boxes, spheres, triangles and polygons, on a frame's own rays
 //! - `min_weight`: leaving out rays that carry little light
 //! - `samples`: how many samples a pixel, and where they lie
 //! - `all`: every rung that a scene has

@@ -38,7 +38,7 @@ impl Query {
     }
 
     /// Every hit at `t_min` < t: t as the kernel has it, how far it may be off, and where.
-    fn hits<const DEPARTING: bool>(&self, hierarchy: &Hierarchy) -> Vec<(f32, f32, Spot)> {
+    pub(super) fn hits<const DEPARTING: bool>(&self, hierarchy: &Hierarchy) -> Vec<(f32, f32, Spot)> {
         let rays = [self.sight];
         let axes = self.sight.axes();
         let (mut space, mut line) = (sight::space::<f32>(&rays), sight::line::<f32>(&rays));

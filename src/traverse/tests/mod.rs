@@ -1,6 +1,7 @@
 //! However rays are grouped and whatever the width, a walk finds what a loop over every primitive finds.
 
 mod brute_force;
+mod error_bounds;
 mod grazing;
 mod rays;
 mod same_as_all;

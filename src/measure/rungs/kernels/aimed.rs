@@ -1,7 +1,5 @@
-//! Rays from the eye that are aimed at what triangles share: points of their common edges, and common corners.
+//! Rays from the eye that are aimed at what faces share: points of their common edges, and common corners.
 
-use super::columns::Columns;
-use super::pairs::triangle_pair;
 use crate::kernel::UNIT_ROUNDOFF;
 use crate::prepare::Prepared;
 use crate::rays::RaySet;
@@ -12,25 +10,20 @@ use glam::{DVec2, DVec3, Vec3};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Rays and the triangles around what each is aimed at.
-pub(super) struct Aimed {
-    pub(super) pairs: Columns<18>,
-    /// The pairs of each ray.
-    pub(super) rays: Vec<Range<usize>>,
-}
-
-/// A mesh whose triangles share points by their places: files often write a corner once for each triangle.
+/// Triangles or polygons that share points by their places: files often write a corner once for each face.
 pub(super) struct Mesh {
     points: Vec<Vec3>,
-    /// By numbers of points.
-    triangles: Vec<[u32; 3]>,
+    /// Numbers of points, face by face.
+    corners: Vec<u32>,
+    /// Of each face, in its column of the scene's geometry.
+    faces: Vec<Range<usize>>,
 }
 
-/// A point to aim at and the triangles that meet there.
-struct Target {
+/// A point to aim at and the faces that meet there.
+pub(super) struct Target {
     at: DVec3,
-    triangles: Vec<u32>,
-    /// What the triangles share: the ends of an edge, or a corner twice.
+    faces: Vec<u32>,
+    /// What the faces share: the ends of an edge, or a corner twice.
     shared: [u32; 2],
 }
 
@@ -44,31 +37,47 @@ const MOST_POINTS: usize = 16;
 const MARGIN: f64 = 32.0 * UNIT_ROUNDOFF as f64;
 
 impl Mesh {
-    pub(super) fn new(geometry: &Geometry) -> Self {
+    pub(super) fn of_triangles(geometry: &Geometry) -> Self {
+        Self::new(geometry, geometry.triangles.iter().map(|triangle| triangle.vertices))
+    }
+
+    pub(super) fn of_polygons(geometry: &Geometry) -> Self {
+        Self::new(geometry, geometry.polygons.iter().map(|polygon| polygon.vertices.clone()))
+    }
+
+    fn new(geometry: &Geometry, faces: impl Iterator<Item = impl IntoIterator<Item = u32>>) -> Self {
         let mut numbers = HashMap::new();
-        let mut points = Vec::new();
-        let mut number = |index: u32| {
-            // Both zeros are one.
-            let point = geometry.vertices[index as usize] + Vec3::ZERO;
-            *numbers.entry(point.to_array().map(f32::to_bits)).or_insert_with(|| {
-                points.push(point);
-                word(points.len() - 1)
-            })
-        };
-        let triangles =
-            geometry.triangles.iter().map(|triangle| triangle.vertices.map(&mut number)).collect();
-        Self { points, triangles }
+        let mut this = Self { points: Vec::new(), corners: Vec::new(), faces: Vec::new() };
+        for face in faces {
+            let first = this.corners.len();
+            for index in face {
+                // Both zeros are one.
+                let point = geometry.vertices[index as usize] + Vec3::ZERO;
+                this.corners.push(*numbers.entry(point.to_array().map(f32::to_bits)).or_insert_with(|| {
+                    this.points.push(point);
+                    word(this.points.len() - 1)
+                }));
+            }
+            this.faces.push(first..this.corners.len());
+        }
+        this
     }
 
     fn point(&self, number: u32) -> DVec3 {
         self.points[number as usize].as_dvec3()
     }
 
-    /// At points of edges that two triangles share: all of the same number for each edge, or of edges evenly taken.
-    pub(super) fn edges(&self, prepared: &Prepared<'_>) -> Aimed {
-        let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * self.triangles.len());
-        for (triangle, &[a, b, c]) in (0..).zip(&self.triangles) {
-            edges.extend([[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], triangle)));
+    /// Edges of a face, in its order.
+    fn edges_of(&self, face: u32) -> impl Iterator<Item = [u32; 2]> {
+        let corners = &self.corners[self.faces[face as usize].clone()];
+        corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&from, &to)| [from, to])
+    }
+
+    /// At points of edges that two faces share: all of the same number for each edge, or of edges evenly taken.
+    pub(super) fn edges(&self) -> Vec<Target> {
+        let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(self.corners.len());
+        for face in 0..word(self.faces.len()) {
+            edges.extend(self.edges_of(face).map(|[a, b]| ([a.min(b), a.max(b)], face)));
         }
         edges.sort_unstable();
         let shared: Vec<_> = edges.chunk_by(|a, b| a.0 == b.0).filter(|edge| edge.len() == 2).collect();
@@ -79,33 +88,38 @@ impl Mesh {
             let [from, to] = ends.map(|point| self.point(point));
             (0..points).map(move |point| Target {
                 at: from.lerp(to, (point as f64 + 0.5) / points as f64),
-                triangles: edge.iter().map(|&(_, triangle)| triangle).collect(),
+                faces: edge.iter().map(|&(_, face)| face).collect(),
                 shared: ends,
             })
         });
-        self.aimed(prepared, &targets.collect::<Vec<_>>())
+        targets.collect()
     }
 
-    /// At corners that triangles share, evenly taken.
-    pub(super) fn corners(&self, prepared: &Prepared<'_>) -> Aimed {
+    /// At corners that faces share, evenly taken.
+    pub(super) fn corners(&self) -> Vec<Target> {
         let stride = self.points.len().div_ceil(MOST_RAYS).max(1);
         let mut at_point = vec![Vec::new(); self.points.len().div_ceil(stride)];
-        for (triangle, corners) in (0..).zip(&self.triangles) {
-            for point in corners.map(|point| point as usize) {
+        for (face, corners) in (0..).zip(&self.faces) {
+            for point in self.corners[corners.clone()].iter().map(|&point| point as usize) {
                 if point.is_multiple_of(stride) {
-                    at_point[point / stride].push(triangle);
+                    at_point[point / stride].push(face);
                 }
             }
         }
-        let targets = at_point.into_iter().enumerate().map(|(place, triangles)| {
+        let targets = at_point.into_iter().enumerate().map(|(place, faces)| {
             let point = word(place * stride);
-            Target { at: self.point(point), triangles, shared: [point; 2] }
+            Target { at: self.point(point), faces, shared: [point; 2] }
         });
-        self.aimed(prepared, &targets.collect::<Vec<_>>())
+        targets.collect()
     }
 
-    /// Rays to targets, but for those that could honestly pass all triangles of their target by.
-    fn aimed(&self, prepared: &Prepared<'_>, targets: &[Target]) -> Aimed {
+    /// Rays to targets, but for those that could honestly pass all faces of their target by: each with these faces.
+    pub(super) fn aim(
+        &self,
+        prepared: &Prepared<'_>,
+        targets: &[Target],
+        mut visit: impl FnMut(&SingleRay, &[u32]),
+    ) {
         let eye = prepared.scene.camera.eye;
         let row = |target: &Target| {
             let [ox, oy, oz] = eye.to_array();
@@ -116,26 +130,24 @@ impl Mesh {
         let set = RaySet { rows: targets.iter().map(row).collect(), ..RaySet::default() };
         let columns = RayColumns::new(prepared, &set);
         let rays = columns.rays(&(0..columns.filled()));
-        let mut aimed = Aimed { pairs: Columns::new(), rays: Vec::new() };
         for (row, target) in targets.iter().enumerate() {
             let Some(stretch) = set.stretch(row) else { continue };
-            if !self.surrounds(target, stretch.origin, stretch.direction) {
-                continue;
+            if self.surrounds(target, stretch.origin, stretch.direction) {
+                visit(&SingleRay::new(&prepared.hierarchy, &rays, row), &target.faces);
             }
-            let ray = SingleRay::new(&prepared.hierarchy, &rays, row);
-            let first = aimed.pairs.len();
-            for &triangle in &target.triangles {
-                let corners = self.triangles[triangle as usize];
-                let vertices =
-                    corners.map(|point| prepared.scale.position(self.points[point as usize]).to_array());
-                aimed.pairs.push(triangle_pair(&ray, vertices));
-            }
-            aimed.rays.push(first..aimed.pairs.len());
         }
-        aimed
     }
 
-    /// Whether the triangles of a target, as seen along a ray at it, lie all around it, with their outer edges farther from the
+    /// The corners of a triangle, in the scale of the prepared scene.
+    pub(super) fn triangle(&self, prepared: &Prepared<'_>, face: u32) -> [[f32; 3]; 3] {
+        let first = self.faces[face as usize].start;
+        [0, 1, 2].map(|corner| {
+            let point = self.points[self.corners[first + corner] as usize];
+            prepared.scale.position(point).to_array()
+        })
+    }
+
+    /// Whether the faces of a target, as seen along a ray at it, lie all around it, with their outer edges farther from the
     /// ray than rounding reaches. Then the ray hits one of them, whichever way it is rounded.
     fn surrounds(&self, target: &Target, origin: DVec3, direction: DVec3) -> bool {
         let (x, y) = direction.normalize().any_orthonormal_pair();
@@ -144,35 +156,34 @@ impl Mesh {
             DVec2::new(from_origin.dot(x), from_origin.dot(y))
         };
         let is_shared = |point: u32| target.shared.contains(&point);
+        let is_edge = target.shared[0] != target.shared[1];
         let mut farthest = 0.0_f64;
-        // Edges that run into what is shared, each with the corner across: at an inner edge there are two, on either side.
-        let mut inner: Vec<([u32; 2], DVec2)> = Vec::new();
+        // Edges that run into what is shared, each with the side of it that the face is on: at an inner edge there are two.
+        let mut inner: Vec<([u32; 2], bool)> = Vec::new();
         let mut nearest_outer = f64::INFINITY;
-        for &triangle in &target.triangles {
-            let [a, b, c] = self.triangles[triangle as usize];
-            for ([from, to], across) in [([a, b], c), ([b, c], a), ([c, a], b)] {
+        for &face in &target.faces {
+            let double_area: f64 = self.edges_of(face).map(|[from, to]| seen(from).perp_dot(seen(to))).sum();
+            for [from, to] in self.edges_of(face) {
                 farthest = farthest.max(self.point(from).distance(origin));
-                let is_edge = target.shared[0] != target.shared[1];
                 let is_inner =
                     if is_edge { is_shared(from) && is_shared(to) } else { is_shared(from) || is_shared(to) };
                 if is_inner {
-                    inner.push(([from.min(to), from.max(to)], seen(across)));
+                    inner.push(([from.min(to), from.max(to)], (double_area > 0.0) == (from < to)));
                 } else {
                     nearest_outer = nearest_outer.min(distance_from_segment(seen(from), seen(to)));
                 }
             }
         }
-        inner.sort_unstable_by_key(|(edge, _)| *edge);
+        inner.sort_unstable();
         let is_closed = inner.chunk_by(|a, b| a.0 == b.0).all(|edge| {
-            let [([from, to], one), (_, other)] = edge else { return false };
-            let (from, along) = (seen(*from), seen(*to) - seen(*from));
-            along.perp_dot(*one - from) * along.perp_dot(*other - from) < 0.0
+            let [(_, one), (_, other)] = edge else { return false };
+            one != other
         });
         is_closed && nearest_outer > MARGIN * farthest
     }
 }
 
-/// Vertices and triangles are fewer than 2³².
+/// Vertices and faces are fewer than 2³².
 fn word(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }

@@ -6,26 +6,44 @@ use std::ops::Range;
 /// Rows of a tile: as many as the widest lanes.
 pub(super) const TILE: usize = 16;
 
+/// Pairs in tiles, as lanes read them; where a tile is not full, pairs that are in it fill it up.
+pub(super) trait Tiles: Sync {
+    /// How many pairs there are.
+    fn pairs(&self) -> usize;
+    /// How many tiles.
+    fn tiles(&self) -> usize;
+    /// Where a pair lies: [`TILE`] places a tile.
+    fn place(&self, pair: usize) -> usize;
+    /// What a tile takes of the cache.
+    fn bytes(&self, tile: usize) -> usize;
+}
+
 /// Rows of N numbers, in tiles of [`TILE`] rows; in a tile, a column a number.
+#[derive(Default)]
 pub(super) struct Columns<const N: usize> {
     tiles: Vec<[[f32; TILE]; N]>,
     count: usize,
 }
 
-impl<const N: usize> Columns<N> {
-    pub(super) fn new() -> Self {
-        Self { tiles: Vec::new(), count: 0 }
-    }
-
-    pub(super) fn len(&self) -> usize {
+impl<const N: usize> Tiles for Columns<N> {
+    fn pairs(&self) -> usize {
         self.count
     }
 
-    /// How many tiles there are; the last is filled up with rows that are in it.
-    pub(super) fn tiles(&self) -> usize {
+    fn tiles(&self) -> usize {
         self.tiles.len()
     }
 
+    fn place(&self, pair: usize) -> usize {
+        pair
+    }
+
+    fn bytes(&self, _: usize) -> usize {
+        size_of::<[[f32; TILE]; N]>()
+    }
+}
+
+impl<const N: usize> Columns<N> {
     pub(super) fn push(&mut self, row: [f32; N]) {
         let lane = self.count % TILE;
         if lane == 0 {
@@ -95,10 +113,10 @@ mod tests {
 
     #[test]
     fn every_row_is_tested_once_at_any_width() {
-        let mut columns = Columns::new();
+        let mut columns = Columns::default();
         let rows: Vec<[f32; 2]> = (0..37_u8).map(|row| [f32::from(row), 0.5]).collect();
         rows.iter().for_each(|&row| columns.push(row));
-        assert_eq!((columns.len(), columns.tiles()), (37, 3));
+        assert_eq!((columns.pairs(), columns.tiles()), (37, 3));
         for width in Width::ALL {
             let mut ts = vec![0.0; columns.tiles() * TILE];
             width.run(Sums(&columns, &mut ts));

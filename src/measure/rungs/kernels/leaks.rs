@@ -1,19 +1,23 @@
-//! Leaks: rays aimed at what triangles share that hit none of them.
+//! Leaks: rays aimed at what faces share that hit none of them.
 //!
 //! Random rays do not find cracks; aimed ones do (Schirra, "How Reliable Are Practical Point-in-Polygon Strategies?", 2008).
 
 use super::super::RungOptions;
-use super::aimed::{Aimed, Mesh};
-use super::{Formula, answers, triangle};
-use crate::lanes::Width;
+use super::aimed::{Mesh, Target};
+use super::pairs::{PolygonPair, triangle_pair};
+use super::{Formula, Tiles, answers, polygon, triangle};
 use crate::prepare::Prepared;
 use crate::render::RenderError;
+use crate::traverse::SingleRay;
 use serde::Serialize;
+use std::ops::Range;
 
-/// Leaks between triangles, formula by formula. Rays start at the eye; they are aimed at points of edges that two triangles
-/// share and at corners that triangles lie all around, as seen from there.
+/// Leaks between triangles or polygons, formula by formula. Rays start at the eye; they are aimed at points of edges that two
+/// faces share and at corners that faces lie all around, as seen from there.
 #[derive(Clone, Debug, Serialize)]
 pub struct LeakRung {
+    /// What shares edges and corners.
+    pub primitive: &'static str,
     /// Rays aimed at edges.
     pub edge_rays: u64,
     /// Rays aimed at corners.
@@ -36,36 +40,79 @@ pub struct Leaks {
 }
 
 impl LeakRung {
-    /// Aims rays and counts those that get through; none for a scene in which no two triangles share an edge, as far as it can
-    /// be seen from the eye.
+    /// Aims rays at triangles and counts those that get through; none for a scene in which no two triangles share an edge, as
+    /// far as it can be seen from the eye.
     ///
     /// # Errors
     /// Told to stop.
-    pub fn measure(prepared: &Prepared<'_>, options: &RungOptions<'_>) -> Result<Option<Self>, RenderError> {
+    pub fn of_triangles(
+        prepared: &Prepared<'_>,
+        options: &RungOptions<'_>,
+    ) -> Result<Option<Self>, RenderError> {
+        let mesh = Mesh::of_triangles(&prepared.scene.geometry);
+        Self::measure::<triangle::Formula>(prepared, &mesh, options, |ray, face, pairs| {
+            pairs.push(triangle_pair(ray, mesh.triangle(prepared, face)));
+        })
+    }
+
+    /// Likewise for polygons.
+    ///
+    /// # Errors
+    /// Told to stop.
+    pub fn of_polygons(
+        prepared: &Prepared<'_>,
+        options: &RungOptions<'_>,
+    ) -> Result<Option<Self>, RenderError> {
+        let mesh = Mesh::of_polygons(&prepared.scene.geometry);
+        let hierarchy = &prepared.hierarchy;
+        let mut by_source = vec![0; hierarchy.polygons.len()];
+        for (index, face) in hierarchy.polygons.iter().enumerate() {
+            by_source[face.source as usize] = index;
+        }
+        Self::measure::<polygon::Formula>(prepared, &mesh, options, |ray, face, pairs| {
+            PolygonPair::new(hierarchy, ray, by_source[face as usize]).push_to(hierarchy, pairs);
+        })
+    }
+
+    /// `push` appends a pair of a ray and a face.
+    fn measure<F: Formula<Pairs: Default>>(
+        prepared: &Prepared<'_>,
+        mesh: &Mesh,
+        options: &RungOptions<'_>,
+        push: impl Fn(&SingleRay, u32, &mut F::Pairs),
+    ) -> Result<Option<Self>, RenderError> {
+        let aimed = |targets: &[Target]| {
+            let (mut pairs, mut rays) = (F::Pairs::default(), Vec::new());
+            mesh.aim(prepared, targets, |ray, faces| {
+                let first = pairs.pairs();
+                faces.iter().for_each(|&face| push(ray, face, &mut pairs));
+                rays.push(first..pairs.pairs());
+            });
+            (pairs, rays)
+        };
         options.step("aiming rays at edges", 0, 2)?;
-        let mesh = Mesh::new(&prepared.scene.geometry);
-        let edges = mesh.edges(prepared);
+        let (edge_pairs, edge_rays) = aimed(&mesh.edges());
         options.step("aiming rays at corners", 1, 2)?;
-        let corners = mesh.corners(prepared);
-        if edges.rays.is_empty() && corners.rays.is_empty() {
+        let (corner_pairs, corner_rays) = aimed(&mesh.corners());
+        if edge_rays.is_empty() && corner_rays.is_empty() {
             return Ok(None);
         }
-        let formulas = triangle::Formula::ALL.iter().map(|&formula| Leaks {
+        let leaks = |formula: F, pairs: &F::Pairs, rays: &[Range<usize>]| {
+            let ts = answers(formula, options.width, pairs);
+            let gets_through = |pairs: &&Range<usize>| ts[(*pairs).clone()].iter().all(|t| t.is_infinite());
+            rays.iter().filter(gets_through).count() as u64
+        };
+        let formulas = F::ALL.iter().map(|&formula| Leaks {
             name: formula.name(),
-            is_engines: formula == triangle::Formula::ENGINES,
-            at_edges: leaks(formula, options.width, &edges),
-            at_corners: leaks(formula, options.width, &corners),
+            is_engines: formula == F::ENGINES,
+            at_edges: leaks(formula, &edge_pairs, &edge_rays),
+            at_corners: leaks(formula, &corner_pairs, &corner_rays),
         });
         Ok(Some(Self {
-            edge_rays: edges.rays.len() as u64,
-            corner_rays: corners.rays.len() as u64,
+            primitive: F::PRIMITIVE,
+            edge_rays: edge_rays.len() as u64,
+            corner_rays: corner_rays.len() as u64,
             formulas: formulas.collect(),
         }))
     }
-}
-
-fn leaks(formula: triangle::Formula, width: Width, aimed: &Aimed) -> u64 {
-    let ts = answers(formula, width, &aimed.pairs);
-    let gets_through = |pairs: &&std::ops::Range<usize>| ts[(*pairs).clone()].iter().all(|t| t.is_infinite());
-    aimed.rays.iter().filter(gets_through).count() as u64
 }

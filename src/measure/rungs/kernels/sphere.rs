@@ -15,7 +15,9 @@ pub(super) enum Formula {
     Compensated,
 }
 
-impl super::Formula<12> for Formula {
+impl super::Formula for Formula {
+    type Pairs = Columns<12>;
+
     const PRIMITIVE: &'static str = "sphere";
     const ALL: &'static [Self] = &[Self::Quadratic, Self::Engines, Self::Compensated];
     const ENGINES: Self = Self::Engines;
@@ -31,8 +33,11 @@ impl super::Formula<12> for Formula {
     fn test(self, width: Width, pairs: &Columns<12>, tiles: Range<usize>, ts: &mut [f32]) {
         width.run(Test { formula: self, pairs, tiles, ts });
     }
+}
 
-    fn truth([ox, oy, oz, dx, dy, dz, _, _, cx, cy, cz, radius]: [f32; 12]) -> PairTruth {
+impl super::WithTruth for Formula {
+    fn truth(pairs: &Columns<12>, pair: usize) -> PairTruth {
+        let [ox, oy, oz, dx, dy, dz, _, _, cx, cy, cz, radius] = pairs.row(pair);
         PairTruth::of_sphere([[ox, oy, oz], [dx, dy, dz]], [cx, cy, cz], radius)
     }
 }

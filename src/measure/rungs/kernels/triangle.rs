@@ -14,7 +14,9 @@ pub(super) enum Formula {
     Engines,
 }
 
-impl super::Formula<18> for Formula {
+impl super::Formula for Formula {
+    type Pairs = Columns<18>;
+
     const PRIMITIVE: &'static str = "triangle";
     const ALL: &'static [Self] = &[Self::MollerTrumbore, Self::Engines];
     const ENGINES: Self = Self::Engines;
@@ -29,9 +31,11 @@ impl super::Formula<18> for Formula {
     fn test(self, width: Width, pairs: &Columns<18>, tiles: Range<usize>, ts: &mut [f32]) {
         width.run(Test { formula: self, pairs, tiles, ts });
     }
+}
 
-    fn truth(pair: [f32; 18]) -> PairTruth {
-        let [ox, oy, oz, dx, dy, dz, _, _, _, ax, ay, az, bx, by, bz, cx, cy, cz] = pair;
+impl super::WithTruth for Formula {
+    fn truth(pairs: &Columns<18>, pair: usize) -> PairTruth {
+        let [ox, oy, oz, dx, dy, dz, _, _, _, ax, ay, az, bx, by, bz, cx, cy, cz] = pairs.row(pair);
         let vertices = [[ax, ay, az], [bx, by, bz], [cx, cy, cz]];
         PairTruth::of_triangle([[ox, oy, oz], [dx, dy, dz]], vertices)
     }
