@@ -64,6 +64,15 @@ impl Shot {
     }
 }
 
+/// Whether a body has starts for such rays from inside.
+pub(super) fn is_possible(body: &Body, starts: &Starts, aim: Aim) -> bool {
+    match aim {
+        Aim::Beside => !starts.beside.is_empty(),
+        Aim::Lattice => body.lattice.is_some() || !starts.lines.is_empty(),
+        Aim::Random | Aim::Edge | Aim::Corner | Aim::Seam => true,
+    }
+}
+
 /// Rays from inside.
 pub(super) fn inside(
     body: &Body,
@@ -79,14 +88,11 @@ pub(super) fn inside(
         let share = at as f64 / count as f64;
         let shot = match (aim, body.lattice) {
             (Aim::Lattice, Some(lattice)) => on_lattice(lattice, random),
-            (Aim::Lattice, None) if starts.lines.is_empty() => {
-                Shot::new(start, target(body, Aim::Corner, share, random) - start.at)
-            }
             (Aim::Lattice, None) => {
                 let line = starts.lines[random.below(starts.lines.len())].nearby(random);
                 Shot::new(line.start, line.direction)
             }
-            (Aim::Beside, _) if !starts.beside.is_empty() => beside(body, starts, random),
+            (Aim::Beside, _) => beside(body, starts, random),
             (Aim::Random, _) => Shot::new(start, random.direction()),
             _ => Shot::new(start, target(body, aim, share, random) - start.at),
         };

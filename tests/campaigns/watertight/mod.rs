@@ -128,8 +128,10 @@ impl Campaign {
             });
         let counted = (PAIRS / body.faces.len() / (2 * Aim::ALL.len())).clamp(1, MOST_COUNTED);
         let mut samples = Vec::new();
-        for aim in Aim::ALL {
-            let count = self.rays_of(&body, aim).div_ceil(2) as usize;
+        let aims: Vec<Aim> =
+            Aim::ALL.into_iter().filter(|&aim| aims::is_possible(&body, &starts, aim)).collect();
+        for &aim in &aims {
+            let count = self.rays_of(&body, aim, aims.len() as u64).div_ceil(2) as usize;
             let mut shots = aims::inside(&body, &starts, (aim, Order::Coherent), count, random);
             shots.extend(aims::inside(&body, &starts, (aim, Order::Shuffled), count, random));
             wavefront.all_are_caught(aim, &shots);
@@ -146,12 +148,12 @@ impl Campaign {
     }
 
     /// In a lattice all aims get as many; elsewhere there are few lines.
-    fn rays_of(&self, body: &Body, aim: Aim) -> u64 {
-        let even = self.rays_of_a_body / Aim::ALL.len() as u64;
+    fn rays_of(&self, body: &Body, aim: Aim, aims: u64) -> u64 {
+        let even = self.rays_of_a_body / aims;
         let on_lines = if body.lattice.is_some() { even } else { even.min(MOST_ON_LINES) };
         match aim {
             Aim::Lattice => on_lines,
-            _ => (self.rays_of_a_body - on_lines).div_ceil(Aim::ALL.len() as u64 - 1),
+            _ => (self.rays_of_a_body - on_lines).div_ceil(aims - 1),
         }
     }
 }
