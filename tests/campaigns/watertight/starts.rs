@@ -1,7 +1,7 @@
 //! Where rays start: at points that are certainly inside.
 
 use super::body::Body;
-use super::random::Random;
+use crate::random::Random;
 use glam::DVec3;
 
 /// A point that f32 holds.
