@@ -1,8 +1,8 @@
 //! How rays are aimed.
 
 use super::body::Body;
-use super::random::Random;
 use super::starts::{Start, Starts};
+use crate::random::Random;
 use glam::DVec3;
 
 /// What rays are aimed at.

@@ -1,7 +1,7 @@
 //! Closed surfaces with flat sides: cubes, prisms over concave outlines, and boxes of a lattice's squares.
 
-use super::random::Random;
 use super::solid::{Made, Solid, prism};
+use crate::random::Random;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::f64::consts::TAU;

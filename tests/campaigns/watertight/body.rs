@@ -1,8 +1,8 @@
 //! A closed surface in its place: corners rounded to f32, a scene of it, and points that are certainly inside.
 
 use super::flat::Flat;
-use super::random::Random;
 use super::solid::{Face, Solid};
+use crate::random::Random;
 use glam::{DQuat, DVec3, Vec3};
 use wavelane::scene::{
     Added, Camera, Geometry, GeometryProblem, ImageSettings, Material, MaterialId, Projection,

@@ -2,10 +2,10 @@
 
 use super::angular::{column_on_a_slab, cube, l_prism, lattice, star_prism, u_prism};
 use super::bunny::{self, bunny};
-use super::random::Random;
 use super::round::{bumpy_globe, globe_of_both, icosphere, needle, torus};
 use super::solid::Made::{Polygons, Triangles};
 use super::solid::Solid;
+use crate::random::Random;
 
 /// A kind of closed surface: its name, and how one is made.
 pub(super) type Kind = (&'static str, fn(&mut Random) -> Solid);

@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::flat::UNIT_ROUNDOFF;
-use super::random::Random;
+use crate::random::Random;
 use glam::DVec3;
 
 /// A point that f32 holds, and the room around it.
