@@ -15,6 +15,7 @@
 //!   the tests of rays against primitives, a formula a file, and [`lanes`] makes width a type;
 //! - [`mod@reference`] traces it in scalar f64, from the textbook: the truth that the engine is checked against;
 //! - [`mod@trace`] gives recorded [`rays`] to any engine on their own, and takes the time;
+//! - [`certified`] says with certainty what a ray meets, and judges the answers of all of them;
 //! - [`film`] holds sample positions, pixels and picture files;
 //! - [`mod@render`] puts these together, [`measure`] compares the results, and `report` shows them; [`ray_tree`] is what both
 //!   engines can say of how a pixel came to its colour.
@@ -38,6 +39,9 @@
 //! # }
 //! ```
 
+#[cfg(test)]
+mod boundary_cases;
+pub mod certified;
 pub mod cli;
 pub mod film;
 pub mod generate;

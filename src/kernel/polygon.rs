@@ -5,7 +5,7 @@
 //! axis each face rounds its own hit point, and rays aimed at the edge of a closed solid get out between two faces; seen
 //! along the ray two faces share the very numbers of their common edge.
 
-use super::ray_space::{Seen, area_error, cross, crosses};
+use super::ray_space::{Seen, cross, crosses, unclear_area};
 use super::sphere::Line;
 use crate::lanes::{Lanes, Mask, Vector};
 
@@ -57,7 +57,7 @@ impl<L: Lanes> Outline<L> {
     {
         let turn = cross(from, to);
         self.add_turn(from, to, turn, zero);
-        self.unclear = self.unclear | (edges & turn.abs().le(area_error(to, size)));
+        self.unclear = self.unclear | (edges & turn.abs().le(unclear_area(from, to, size)));
     }
 
     #[inline(always)]

@@ -16,7 +16,8 @@ pub(crate) const BLOCK: usize = 4;
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleBlock {
     pub(crate) vertices: [[[f32; BLOCK]; 3]; 3],
-    /// Length of the longest edge.
+    /// Length of the longest edge, at least [`LEAST_SIZE`]; not a number where there is no triangle, so that no ray comes near
+    /// to its edges.
     pub(crate) size: [f32; BLOCK],
     /// Twice the area, and for needles more: what the error of t is in proportion to.
     pub(crate) error_area: [f32; BLOCK],
@@ -71,11 +72,16 @@ pub(super) fn touch_distance(size: f32) -> f32 {
     32.0 * UNIT_ROUNDOFF * size
 }
 
+/// No triangle is taken to be smaller, as a share of the scene. What the kernel compares with the cube of this is the product
+/// of three lengths, of which f32 would lose digits below 2⁻¹⁰²: a ray that comes so near to so small a triangle is decided in
+/// f64.
+const LEAST_SIZE: f32 = 1.0 / (1 << 28) as f32;
+
 impl TriangleBlock {
     /// Triangles of no area, which nothing hits.
     pub(super) const EMPTY: Self = Self {
         vertices: [[[0.0; BLOCK]; 3]; 3],
-        size: [0.0; BLOCK],
+        size: [f32::NAN; BLOCK],
         error_area: [0.0; BLOCK],
         ids: [u32::MAX; BLOCK],
     };
@@ -93,7 +99,7 @@ impl TriangleBlock {
         // The kernel's error of a distance from the plane is 6u·(L + s²/h) by measurement, with s the longest edge and h the
         // height above it; and s²/h = s³ / double area.
         let cube = size * size * size;
-        self.size[lane] = size;
+        self.size[lane] = size.max(LEAST_SIZE);
         self.error_area[lane] = double_area + cube / scene_extent;
         self.ids[lane] = id;
     }

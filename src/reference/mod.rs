@@ -22,6 +22,8 @@
 mod camera;
 mod certainty;
 mod hierarchy;
+#[cfg(test)]
+mod judged;
 mod optics;
 mod pair;
 mod precision;

@@ -69,6 +69,7 @@ pub(super) fn beer(absorption: DVec3, length: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::boundary_cases::{self, Answer, CASES, U};
     use crate::scene::Rgb;
 
     fn glass(ior: f32) -> Dielectric {
@@ -155,5 +156,98 @@ mod tests {
         let through = beer(DVec3::new(0.0, 0.5, 2.0), 3.0);
         assert_eq!(through, DVec3::new(1.0, (-1.5_f64).exp(), (-6.0_f64).exp()));
         assert_eq!(beer(DVec3::ZERO, f64::INFINITY), DVec3::ONE);
+    }
+
+    fn answer(direction: DVec3, normal: DVec3, ior: f32, entering: bool) -> Answer {
+        let boundary = Boundary::new(direction, normal, f64::from(ior), entering);
+        let (reflected, refracted) = boundary.shares(DVec3::ZERO, &glass(ior), entering);
+        let direction = boundary.refracted(direction, normal);
+        Answer {
+            cos_incident: boundary.cos_incident,
+            shares: [reflected.x, refracted.x],
+            refracted: boundary.cos_refracted.zip(direction),
+        }
+    }
+
+    #[test]
+    fn cases_43_to_45_are_as_decimals_of_sixty_digits_have_them() {
+        for case in CASES {
+            case.check(&answer(case.direction(), DVec3::Z, case.ior, case.entering));
+        }
+    }
+
+    /// R never falls towards the critical angle, and reaches 1 as (1 − c)⁵ does: 1 − R ≤ 5c.
+    #[test]
+    fn case_43_the_neighbours_of_the_critical_angle() {
+        let mut last = 1.0;
+        for (cos, k) in boundary_cases::around_critical() {
+            let direction = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, -cos);
+            let found = answer(direction, DVec3::Z, 1.5, false);
+            let cos_refracted = found.refracted.map_or(0.0, |(cos, _)| cos);
+            assert!((cos_refracted * cos_refracted - k.max(0.0)).abs() <= 8.0 * U, "{cos}: {found:?}");
+            assert!(k.abs() <= 8.0 * U || found.refracted.is_some() == (k > 0.0), "{cos}: {found:?}");
+            let reflectance = found.shares[0];
+            assert!(1.0 - reflectance <= 5.0 * cos_refracted && reflectance <= last, "{cos}: {found:?}");
+            last = reflectance;
+        }
+        assert!(last < 1.0);
+    }
+
+    #[test]
+    fn case_42_a_cosine_above_1() {
+        let normal = boundary_cases::too_long_a_normal();
+        for entering in [true, false] {
+            let found = answer(-normal, normal, 1.5, entering);
+            assert_eq!(found.cos_incident, 1.0);
+            // R0 = (0.5/2.5)².
+            assert!((found.shares[0] - 0.04).abs() <= 2.0 * 0.04 * f64::EPSILON, "{found:?}");
+            assert!(found.refracted.is_some_and(|(cos, _)| cos == 1.0), "{found:?}");
+        }
+        // And one below 0, where rounding has turned a normal away.
+        assert_eq!(answer(DVec3::new(1.0, 0.0, 1e-9), DVec3::Z, 1.5, true).cos_incident, 0.0);
+    }
+
+    /// 45: the model's own error, Schlick's against Fresnel's, is not rounding. Largest differences and where: from decimals,
+    /// at angles in the rarer medium; on the dense side a cosine of the wrong side would be off by 0.89 near the critical angle.
+    #[test]
+    fn case_45_schlick_against_fresnel() {
+        let fresnel = |cos: f64, ior: f64| {
+            let refracted = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
+            let across = (cos - ior * refracted) / (cos + ior * refracted);
+            let along = (ior * cos - refracted) / (ior * cos + refracted);
+            f64::midpoint(across * across, along * along)
+        };
+        for (ior, largest, degrees) in [(1.33_f32, 0.060, 83.8), (1.5, 0.036, 85.0), (2.4, 0.074, 84.5)] {
+            let off = |degrees: f64| {
+                let cos = degrees.to_radians().cos();
+                let (into, true_into) = (reflectance(degrees, ior, true), fresnel(cos, f64::from(ior)));
+                // The same two rays, the other way.
+                let inside = (degrees.to_radians().sin() / f64::from(ior)).asin().to_degrees();
+                assert!(
+                    (reflectance(inside, ior, false) - into).abs() < 1e-9,
+                    "{degrees}° and back, ior {ior}"
+                );
+                (into - true_into).abs()
+            };
+            let worst = (0..=900).map(|step| off(f64::from(step) / 10.0)).fold(0.0, f64::max);
+            assert!((worst - largest).abs() < 5e-4, "{worst} for ior {ior}");
+            assert!((off(degrees) - worst).abs() < 5e-4, "at {degrees}°, ior {ior}");
+        }
+    }
+
+    /// 46 and 47: what does not absorb is 1 even over an infinite length, and deep absorption is exact to the rounding of σt.
+    #[test]
+    fn cases_46_and_47_absorption_over_no_end_and_deep() {
+        assert_eq!(beer(DVec3::new(0.0, 0.5, 0.5), f64::INFINITY), DVec3::X);
+        assert_eq!(beer(DVec3::new(0.0, 0.5, 0.5), 1e300), DVec3::X);
+        // e^-20, e^-87, e^-103.9 and e^-104 in decimals of sixty digits.
+        for (depth, expected) in [
+            (20.0, 2.061_153_622_438_557_8e-9),
+            (87.0, 1.645_811_431_082_273_7e-38),
+            (104.0, 6.813_556_821_545_298_5e-46),
+        ] {
+            let found = beer(DVec3::splat(depth / 4.0), 4.0).x;
+            assert!((found - expected).abs() <= (depth + 4.0) * 4.0 * U * expected, "{depth}: {found:e}");
+        }
     }
 }

@@ -16,6 +16,7 @@ pub struct Run<'a> {
     columns: &'a RayColumns,
     query: Query,
     ends: EndColumns,
+    counts: Counts,
 }
 
 impl<'a> Run<'a> {
@@ -28,15 +29,16 @@ impl<'a> Run<'a> {
             columns,
             query,
             ends: EndColumns { t: vec![0.0; columns.filled()], id: vec![0; ids] },
+            counts: Counts::default(),
         }
     }
 
     /// Traces all rays once, on the threads of a pool, and returns wall-clock seconds: from rays in columns to hits in
     /// columns, both in the scene's scale.
     pub fn pass(&mut self, width: Width, pool: &rayon::ThreadPool) -> f64 {
-        let Self { prepared, columns, query, ends } = self;
+        let Self { prepared, columns, query, ends, counts } = self;
         let start = Instant::now();
-        pool.install(|| width.run(Pass { prepared, columns, query: *query, ends }));
+        *counts = pool.install(|| width.run(Pass { prepared, columns, query: *query, ends }));
         start.elapsed().as_secs_f64()
     }
 
@@ -44,6 +46,12 @@ impl<'a> Run<'a> {
     /// below 0 for what is no ray.
     pub(crate) fn ends(&self) -> &[f32] {
         &self.ends.t
+    }
+
+    /// How many rays of the last pass walked in packets; the others walked alone.
+    #[must_use]
+    pub fn in_packets(&self) -> u64 {
+        self.counts.in_packets
     }
 
     /// What the last pass found.

@@ -5,7 +5,7 @@
 
 use super::column::widen_vector;
 use super::elementary::exp;
-use super::queue::{AttenuationQueue, RayQueue, SurfaceQueue};
+use super::queue::{AttenuationQueue, DepartureQueue, RayQueue, SurfaceQueue};
 use super::statistics::Work;
 use crate::lanes::{Double, Vector};
 use crate::prepare::Prepared;
@@ -14,7 +14,7 @@ use crate::scene::Rgb;
 /// Writes an attenuation for each surface, 1 where the ray came from outside; returns how many exponentials it took.
 pub(super) fn absorb<D: Double>(
     prepared: &Prepared<'_>,
-    rays: &RayQueue,
+    (rays, departures): (&RayQueue, Option<&DepartureQueue>),
     surfaces: &SurfaceQueue,
     attenuations: &mut AttenuationQueue,
     work: &mut Work,
@@ -28,7 +28,7 @@ pub(super) fn absorb<D: Double>(
     for first in (0..surfaces.len()).step_by(D::WIDTH) {
         let count = (surfaces.len() - first).min(D::WIDTH);
         let mut absorption = [[0.0; 8]; 3];
-        let mut origin = [[0.0; 8]; 3];
+        let (mut origin, mut origin_low) = ([[0.0; 8]; 3], [[0.0; 8]; 3]);
         for lane in 0..count {
             let row = first + lane;
             // A ray that stays inside came from inside.
@@ -42,11 +42,15 @@ pub(super) fn absorb<D: Double>(
             for channel in 0..3 {
                 absorption[channel][lane] = coefficients[channel];
                 origin[channel][lane] = rays.origin[channel][ray];
+                if let Some(departures) = departures {
+                    origin_low[channel][lane] = departures.origin_low[channel][ray];
+                }
             }
         }
         work.lanes.add(D::WIDTH, count);
-        let [x, y, z] = origin.map(|column| D::widen(&column));
-        let position: Vector<D> = widen_vector(&surfaces.position, first);
+        let [x, y, z] = [0, 1, 2].map(|axis| D::widen(&origin[axis]) + D::widen(&origin_low[axis]));
+        let position: Vector<D> =
+            widen_vector(&surfaces.position, first) + widen_vector(&surfaces.position_low, first);
         let length = (position - Vector::new(x, y, z)).length() * world_from_scene;
         for (column, absorption) in attenuations.attenuation.iter_mut().zip(absorption) {
             if absorption == [0.0; 8] {

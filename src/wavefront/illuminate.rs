@@ -56,7 +56,8 @@ pub(super) fn aim<D: Double>(
             }
         };
         // A light at the very point lies in no direction, and no comparison with NaN is true.
-        let l = to_light.normalized(one);
+        let distance = to_light.length();
+        let l = to_light * (one / distance);
         let cos_light = surface.shading_normal.dot(l);
         let is_before = cos_light.gt(zero) & surface.geometric_normal.dot(l).gt(zero);
         let mut bits = is_before.bits();
@@ -95,9 +96,11 @@ pub(super) fn aim<D: Double>(
             added = added + Vector::new(specular_r, specular_g, specular_b) * highlight;
         }
         let added = added.times(Vector::splat(intensity.as_dvec3().to_array()));
-        let segment = match light_is_near {
-            true => Segment::to_point(to_light),
-            false => Segment { direction: l, end: D::splat(f64::INFINITY) },
+        let segment = if light_is_near {
+            Segment::to_point(SurfaceLanes::kept_on_side(to_light, distance, surface.geometric_normal))
+        } else {
+            let direction = SurfaceLanes::kept_on_side(l, one, surface.geometric_normal);
+            Segment { direction, end: D::splat(f64::INFINITY) }
         };
         push_rows(bits, first, &segment, added, surfaces, shadows);
     }

@@ -61,6 +61,119 @@ impl<D: Double> Boundary<D> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+    use crate::boundary_cases::{self, Answer, CASES, Case, U};
+    use crate::lanes::{Job, Lanes, Mask, Single, Width};
+    use glam::DVec3;
+
+    /// A ray, a normal on its side, an index, and whether the ray enters.
+    type Question = (DVec3, DVec3, f32, bool);
+
+    /// Questions in lanes, as many at once as there are lanes.
+    struct Ask<'a>(&'a [Question]);
+
+    impl Job for Ask<'_> {
+        type Output = Vec<Answer>;
+
+        fn run<F: Single>(self) -> Vec<Answer> {
+            self.0.chunks(F::Double::WIDTH).flat_map(in_lanes::<F::Double>).collect()
+        }
+    }
+
+    fn in_lanes<D: Double>(questions: &[Question]) -> Vec<Answer> {
+        let column = |value: &dyn Fn(&Question) -> f64| {
+            let mut column = [0.0; 8];
+            for (lane, question) in column.iter_mut().zip(questions) {
+                *lane = value(question);
+            }
+            D::load(&column)
+        };
+        let [dx, dy, dz] = [0, 1, 2].map(|axis| column(&|question| question.0[axis]));
+        let [nx, ny, nz] = [0, 1, 2].map(|axis| column(&|question| question.1[axis]));
+        let ior = column(&|question| f64::from(question.2));
+        let entering = column(&|question| f64::from(u8::from(question.3))).gt(D::splat(0.0));
+        let (direction, normal) = (Vector::new(dx, dy, dz), Vector::new(nx, ny, nz));
+        let boundary = Boundary::new(direction, normal, ior, entering);
+        let reflectance = boundary.reflectance(ior, entering);
+        let refracted = boundary.refracted(direction, normal);
+        let lanes = [
+            boundary.cos_incident,
+            boundary.cos_refracted,
+            reflectance,
+            refracted.x,
+            refracted.y,
+            refracted.z,
+        ];
+        let lanes = lanes.map(|lanes| {
+            let mut column = [0.0; 8];
+            lanes.store(&mut column);
+            column
+        });
+        let total = boundary.is_total.bits();
+        let answer = |lane: usize| {
+            let [cos_incident, cos_refracted, reflectance, x, y, z] = lanes.map(|column| column[lane]);
+            let is_total = total >> lane & 1 == 1;
+            assert!(!is_total || cos_refracted == 0.0, "{cos_refracted} under total internal reflection");
+            Answer {
+                cos_incident,
+                shares: [reflectance, 1.0 - reflectance],
+                refracted: (!is_total).then_some((cos_refracted, DVec3::new(x, y, z))),
+            }
+        };
+        (0..questions.len()).map(answer).collect()
+    }
+
+    #[test]
+    fn cases_43_to_45_are_as_decimals_of_sixty_digits_have_them() {
+        let question = |case: &Case| (case.direction(), DVec3::Z, case.ior, case.entering);
+        let questions: Vec<Question> = CASES.iter().map(question).collect();
+        for width in Width::ALL {
+            for (case, answer) in CASES.iter().zip(width.run(Ask(&questions))) {
+                case.check(&answer);
+            }
+        }
+    }
+
+    /// R never falls towards the critical angle, and reaches 1 as (1 − c)⁵ does: 1 − R ≤ 5c.
+    #[test]
+    fn case_43_the_neighbours_of_the_critical_angle() {
+        let around = boundary_cases::around_critical();
+        let question =
+            |&(cos, _): &(f64, f64)| (DVec3::new((1.0 - cos * cos).sqrt(), 0.0, -cos), DVec3::Z, 1.5, false);
+        let questions: Vec<Question> = around.iter().map(question).collect();
+        for width in Width::ALL {
+            let mut last = 1.0;
+            for ((cos, k), found) in around.iter().zip(width.run(Ask(&questions))) {
+                let cos_refracted = found.refracted.map_or(0.0, |(cos, _)| cos);
+                assert!((cos_refracted * cos_refracted - k.max(0.0)).abs() <= 8.0 * U, "{cos}: {found:?}");
+                assert!(k.abs() <= 8.0 * U || found.refracted.is_some() == (*k > 0.0), "{cos}: {found:?}");
+                let reflectance = found.shares[0];
+                assert!(1.0 - reflectance <= 5.0 * cos_refracted && reflectance <= last, "{cos}: {found:?}");
+                last = reflectance;
+            }
+            assert!(last < 1.0);
+        }
+    }
+
+    #[test]
+    fn case_42_a_cosine_above_1() {
+        let normal = boundary_cases::too_long_a_normal();
+        for width in Width::ALL {
+            for found in width.run(Ask(&[(-normal, normal, 1.5, true), (-normal, normal, 1.5, false)])) {
+                assert_eq!(found.cos_incident, 1.0);
+                // R0 = (0.5/2.5)².
+                assert!((found.shares[0] - 0.04).abs() <= 2.0 * 0.04 * f64::EPSILON, "{found:?}");
+                assert!(found.refracted.is_some_and(|(cos, _)| cos == 1.0), "{found:?}");
+            }
+            // And one below 0, where rounding has turned a normal away.
+            let below = (DVec3::new(1.0, 0.0, 1e-9), DVec3::Z, 1.5, true);
+            assert_eq!(width.run(Ask(&[below]))[0].cos_incident, 0.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod bounds {
     use super::super::twofold::Twofold;
     use super::*;
     use glam::DVec3;

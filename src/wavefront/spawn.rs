@@ -139,7 +139,8 @@ fn reflected<D: Double>(surface: &SurfaceLanes<D>, has_vertex_normals: bool) -> 
         let other = mirrored(surface.direction, surface.geometric_normal);
         direction = Vector::select(stays, direction, other);
     }
-    direction.normalized(D::splat(1.0))
+    let one = D::splat(1.0);
+    SurfaceLanes::kept_on_side(direction.normalized(one), one, surface.geometric_normal)
 }
 
 /// Writes the refracted rays of some surfaces, and returns the shares of the reflected ones.
@@ -181,6 +182,7 @@ fn refract<D: Double>(
         direction = Vector::select(leaves, direction, other);
         refracted_share = Vector::select(!leaves & at_true_normal.is_total, none, refracted_share);
     }
+    direction = SurfaceLanes::kept_on_side(direction, one, -surface.geometric_normal);
     let mut rounded = [[0.0; 8]; 6];
     let values =
         [direction.x, direction.y, direction.z, refracted_share.x, refracted_share.y, refracted_share.z];

@@ -9,6 +9,7 @@ use super::queue::{
     DepartureQueue, HitQueue, NormalQueue, RadianceQueue, RadianceRecord, RayQueue, SurfaceQueue,
 };
 use super::statistics::Work;
+use crate::kernel::UNIT_ROUNDOFF;
 use crate::lanes::{Double, Lanes, Mask, Vector};
 use crate::prepare::bvh::Kind;
 use crate::prepare::{Prepared, material_of};
@@ -389,9 +390,18 @@ impl<D: Double> SurfaceLanes<D> {
             if normals.len() == 0 { geometric_normal } else { widen_vector(&normals.shading_normal, row) };
         Self {
             direction: widen_vector(&surfaces.direction, row),
-            position: widen_vector(&surfaces.position, row),
+            position: widen_vector(&surfaces.position, row) + widen_vector(&surfaces.position_low, row),
             geometric_normal,
             shading_normal,
         }
+    }
+
+    /// A direction that leaves the surface on the side of a normal, n_g or −n_g, such that rounding it to f32 does not turn it
+    /// to the other side. It may take u of its length from the height that it rises by, as rounding has done to the normal;
+    /// what rises by less than 4u of its length is lifted to that.
+    #[inline(always)]
+    pub(super) fn kept_on_side(direction: Vector<D>, length: D, normal: Vector<D>) -> Vector<D> {
+        let least_rise = length * D::splat(4.0 * f64::from(UNIT_ROUNDOFF));
+        direction + normal * (least_rise - direction.dot(normal)).max(D::splat(0.0))
     }
 }

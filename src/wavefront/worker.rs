@@ -247,7 +247,14 @@ impl<'a> Worker<'a> {
         if prepared.plan.absorption {
             let exponentials = self.statistics.timed(depth, Stage::Absorb, |work| {
                 work.rows += scratch.surfaces.len() as u64;
-                absorb::<D>(prepared, &level.rays, &scratch.surfaces, &mut level.attenuations, work)
+                let departures = (depth > 0).then_some(&level.departures);
+                absorb::<D>(
+                    prepared,
+                    (&level.rays, departures),
+                    &scratch.surfaces,
+                    &mut level.attenuations,
+                    work,
+                )
             });
             self.statistics.exponentials += exponentials;
         }

@@ -9,11 +9,14 @@
 mod agreement;
 mod bad_input;
 mod bounds;
+mod certified;
 mod command_line;
 mod example_scenes;
 mod floor;
 mod folder;
 mod formats;
+mod hard_cases;
+mod hard_cases_light;
 mod measuring;
 mod model;
 mod pixel_tree;

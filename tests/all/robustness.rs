@@ -236,3 +236,56 @@ fn face(kind: &str, corners: &[Vec3]) -> String {
     let corners: Vec<String> = corners.iter().map(|corner| format!("{:?}", corner.to_array())).collect();
     format!("[[{kind}]]\nvertices = [{}]\nmaterial = \"m\"\n", corners.join(", "))
 }
+
+/// A convex solid hides no light from itself and sees nothing of itself, where light leaves its face at whatever small angle.
+#[test]
+fn a_convex_solid_does_not_meet_itself_at_grazing_angles() {
+    let turn = glam::Mat3::from_cols_array(&[2.0, 1.0, 2.0, -2.0, 2.0, 1.0, 1.0, 2.0, -2.0]);
+    let world = |x: f32, y: f32, z: f32| (turn * Vec3::new(x, y, z)).to_array();
+    let corners: [Vec3; 8] = std::array::from_fn(|at| {
+        turn * Vec3::from([0, 1, 2].map(|axis| if at >> axis & 1 == 1 { 1.0 } else { -1.0 }))
+    });
+    let walls = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    for quads in [false, true] {
+        let walls: String = walls
+            .iter()
+            .map(|&[a, b, c, d]| match quads {
+                true => face("polygon", &[a, b, c, d].map(|corner| corners[corner])),
+                false => [[a, b, c], [a, c, d]]
+                    .map(|face_corners| face("triangle", &face_corners.map(|corner| corners[corner])))
+                    .concat(),
+            })
+            .collect();
+        for exponent in [8, 12, 16, 18, 20] {
+            // The rise from the face x = 1 for each unit along it.
+            let rise = 0.5_f32.powi(exponent);
+            let image = "[image]\nsize = [300, 300]\nbackground = 1\n[render]\nmax_depth = 1\n";
+            let shone_on = pictures(&format!(
+                "{image}[camera]\nkind = \"orthographic\"\neye = {:?}\ntarget = {:?}\nup = {:?}\nheight = 5.99\n\
+                 [[light]]\nposition = {:?}\n[material.m]\ndiffuse = 1e9\n{walls}",
+                world(5.0, 0.0, 0.0),
+                world(1.0, 0.0, 0.0),
+                world(0.0, 0.0, 1.0),
+                world(1.0 + 5.0 * rise, 0.2, 5.0),
+            ));
+            for (engine, image) in shone_on {
+                let dark = image.pixels.iter().filter(|pixel| **pixel == [0.0; 3]).count();
+                assert_eq!(dark, 0, "shadows, {engine}, quads {quads}, rising by 2^-{exponent}");
+            }
+            if exponent <= 16 {
+                let mirroring = pictures(&format!(
+                    "{image}[camera]\nkind = \"orthographic\"\neye = {:?}\ntarget = {:?}\nup = {:?}\nheight = {}\n\
+                     [material.m]\nmirror = 1\n{walls}",
+                    world(1.0 + 4.0 * rise, 0.3, -4.0),
+                    world(1.0, 0.1, 0.0),
+                    world(1.0, 0.0, 0.0),
+                    5.4 * rise
+                ));
+                for (engine, image) in mirroring {
+                    let dark = image.pixels.iter().filter(|pixel| **pixel != [1.0; 3]).count();
+                    assert_eq!(dark, 0, "mirrors, {engine}, quads {quads}, falling by 2^-{exponent}");
+                }
+            }
+        }
+    }
+}

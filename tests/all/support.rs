@@ -9,7 +9,7 @@ use wavelane::lanes::Width;
 use wavelane::load::load;
 use wavelane::measure::Difference;
 use wavelane::render::{Engine, RenderOptions, Rendered, render};
-use wavelane::scene::{Light, Scene};
+use wavelane::scene::{Light, Projection, Scene, Window};
 
 /// A folder that goes away with the value.
 pub(crate) struct Folder(tempfile::TempDir);
@@ -159,14 +159,33 @@ vertices = [[-5, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]]
 material = "matte"
 "#;
 
-/// Multiplies every length of a scene by a power of two, which rounds nothing.
+/// Multiplies every length of a scene by a power of two, which rounds nothing: positions, radii, what the camera covers; and
+/// by its inverse what is per unit of length, absorption.
 pub(crate) fn scaled(mut scene: Scene, exponent: i32) -> Scene {
     let factor = 2.0_f32.powi(exponent);
     scene.camera.eye *= factor;
     scene.camera.target *= factor;
+    let edges = |window: &mut Window| {
+        let Window { left, right, bottom, top } = window;
+        [left, right, bottom, top].into_iter().for_each(|edge| *edge *= factor);
+    };
+    match &mut scene.camera.projection {
+        Projection::PerspectiveAngle { .. } => {}
+        Projection::PerspectiveWindow { window, distance } => {
+            edges(window);
+            *distance *= factor;
+        }
+        Projection::OrthographicHeight { height } => *height *= factor,
+        Projection::OrthographicWindow { window } => edges(window),
+    }
     for light in &mut scene.lights {
         if let Light::Point { position, .. } = light {
             *position *= factor;
+        }
+    }
+    for material in &mut scene.materials {
+        if let Some(dielectric) = &mut material.dielectric {
+            dielectric.absorption /= factor;
         }
     }
     for sphere in &mut scene.geometry.spheres {

@@ -14,8 +14,9 @@
     reason = "a test may end where it finds what it does not expect"
 )]
 
+mod watertight;
+
 /// How many rays a campaign traces: what the environment says, or else as many as given.
-#[allow(dead_code, reason = "campaigns come one by one")]
 fn ray_budget(usual: u64) -> u64 {
     let Ok(number) = std::env::var("WAVELANE_CAMPAIGN_RAYS") else { return usual };
     number.parse().unwrap_or_else(|_| panic!("WAVELANE_CAMPAIGN_RAYS is {number}, not a number of rays"))

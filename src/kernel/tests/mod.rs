@@ -1,5 +1,5 @@
-//! What the kernels promise: the same bits in any lane, t and inside within their bounds of the textbook's, and boxes that
-//! let through whatever is hit.
+//! What the kernels promise: the same bits in any lane, t and inside within their bounds of what the judge says, which is the
+//! truth, and boxes that let through whatever is hit.
 
 mod boxes;
 mod hard;
@@ -10,7 +10,7 @@ mod sphere;
 mod textbook;
 mod triangle;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use sight::Sight;
 
@@ -79,6 +79,24 @@ pub(crate) fn single(number: f64) -> f32 {
 /// To f32 and back, as everything is that a kernel sees.
 fn rounded(point: DVec3) -> DVec3 {
     point.as_vec3().as_dvec3()
+}
+
+/// |cos| of the angle between a ray and the normal of corners.
+fn cosine(ray: &Sight, corners: &[DVec3]) -> f64 {
+    let spanned = corners.windows(2).map(|edge| (edge[0] - corners[0]).cross(edge[1] - corners[0]));
+    let normal = spanned.sum::<DVec3>().normalize_or_zero();
+    normal.dot(ray.d().normalize()).abs()
+}
+
+/// Corners as the judge takes them.
+fn singles(corners: &[DVec3]) -> Vec<Vec3> {
+    corners.iter().map(|corner| corner.as_vec3()).collect()
+}
+
+/// The longest distance between two corners, rounded up to f32.
+fn size(corners: &[DVec3]) -> f32 {
+    let pairs = corners.iter().flat_map(|a| corners.iter().map(move |b| a.distance(*b)));
+    single(pairs.fold(0.0, f64::max)).next_up()
 }
 
 /// Distance of the ray's line from a segment, in f64.

@@ -1,7 +1,11 @@
-//! The crossing-number test in f32 against the winding number in f64.
+//! The crossing-number test in f32 against the judge.
 
 use super::sight::{self, Sight};
-use super::{U, aimed, distance_from_edges, edges, point, positive, reach, rounded, start, vector};
+use super::{
+    U, aimed, cosine, distance_from_edges, edges, point, positive, reach, rounded, singles, size, start,
+    vector,
+};
+use crate::certified::{self, Seen};
 use crate::kernel::polygon::{self, Outline};
 use crate::lanes::Vector;
 use glam::DVec3;
@@ -66,14 +70,8 @@ fn outline(ray: &Sight, corners: &[DVec3]) -> Outline<f32> {
     outline
 }
 
-/// Whether the corners, as seen along the ray, go round it an odd number of times: the sum of the angles between them.
-fn winds_round(ray: &Sight, corners: &[DVec3]) -> bool {
-    let direction = ray.d().normalize();
-    let angles = edges(corners).map(|edge| {
-        let [from, to] = edge.map(|corner| ray.seen_along(corner));
-        direction.dot(from.cross(to)).atan2(from.dot(to))
-    });
-    (angles.sum::<f64>() / TAU).round() % 2.0 != 0.0
+fn seen(ray: &Sight, corners: &[DVec3]) -> Seen {
+    certified::polygon(&ray.judged(), &singles(corners)).seen
 }
 
 fn meet_plane(ray: &Sight, corners: &[DVec3]) -> polygon::Meeting<f32> {
@@ -89,30 +87,46 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
     #[test]
-    fn an_odd_number_of_crossings_is_an_odd_winding_number_away_from_edges(case in case()) {
+    fn an_odd_number_of_crossings_is_the_truth_away_from_edges(case in case()) {
         let Case { ray, corners } = &case;
-        if distance_from_edges(ray, corners) > 6.0 * U * reach(ray, corners) {
-            prop_assert_eq!(outline(ray, corners).odd, winds_round(ray, corners));
+        let seen = seen(ray, corners);
+        if seen != Seen::EdgeOn && distance_from_edges(ray, corners) > 6.0 * U * reach(ray, corners) {
+            prop_assert_eq!(outline(ray, corners).odd, seen == Seen::Inside);
+        }
+    }
+
+    /// However near to an edge.
+    #[test]
+    fn what_is_clear_is_the_truth(case in case()) {
+        let Case { ray, corners } = &case;
+        let space = sight::space::<f32>(&[*ray]);
+        let from_ray = |corner: DVec3| space.see(ray.axes().map(|axis| corner.as_vec3()[axis]));
+        let mut outline = Outline::<f32>::new();
+        for [from, to] in edges(corners) {
+            outline.add_edge_with_doubt(&from_ray(from), &from_ray(to), size(corners), true, 0.0);
+        }
+        let seen = seen(ray, corners);
+        if seen != Seen::EdgeOn && !outline.unclear {
+            prop_assert_eq!(outline.odd, seen == Seen::Inside);
+            prop_assert!(!seen.is_boundary());
         }
     }
 
     #[test]
-    fn t_is_within_its_bound_of_the_textbook_s_and_between_the_corners(case in case()) {
+    fn t_is_within_its_bound_of_the_truth_and_between_the_corners(case in case()) {
         let Case { ray, corners } = &case;
         let found = meet_plane(ray, corners);
-        let (o, d, normal) = (ray.o(), ray.d(), newell(corners));
         let third = ray.third();
-        let ts: Vec<f64> = corners.iter().map(|&corner| (corner - o)[third] / d[third]).collect();
+        let ts: Vec<f64> = corners.iter().map(|&corner| (corner - ray.o())[third] / ray.d()[third]).collect();
         let (least, largest) =
             (ts.iter().copied().fold(f64::INFINITY, f64::min), ts.iter().copied().fold(f64::NEG_INFINITY, f64::max));
         let slack = 4.0 * U * least.abs().max(largest.abs());
         let t = f64::from(found.t);
-        if found.meets && winds_round(ray, corners) {
+        let expected = certified::polygon(&ray.judged(), &singles(corners)).t;
+        if let (true, Some(expected)) = (found.meets, expected) {
             prop_assert!(least - slack <= t && t <= largest + slack, "{t} is not between {least} and {largest}");
-            let slope = normal.dot(d);
-            let expected = (normal.dot(corners[0] - o) / slope).clamp(least, largest);
-            let off = (t - expected).abs() * d.length();
-            let bound = 6.0 * U * reach(ray, corners) / (slope.abs() / d.length());
+            let off = expected.distance(t) * ray.d().length();
+            let bound = 6.0 * U * reach(ray, corners) / cosine(ray, corners);
             prop_assert!(off <= bound, "t is off by {off:e}, which is {} of the bound", off / bound);
         }
     }

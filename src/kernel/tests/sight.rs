@@ -1,6 +1,7 @@
 //! A ray in the forms that the kernels take: derived here once more, from what the kernels say they want, so that tests
 //! do not take over a traversal's mistakes.
 
+use crate::certified;
 use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::sphere::Line;
 use crate::kernel::{RaySpace, axes_from};
@@ -27,6 +28,11 @@ impl Sight {
     /// The direction in f64.
     pub(crate) fn d(&self) -> DVec3 {
         DVec3::from(self.direction.map(f64::from))
+    }
+
+    /// For the judge.
+    pub(crate) fn judged(&self) -> certified::Line {
+        certified::Line::new(self.origin, self.direction)
     }
 
     /// A point relative to the origin without its part along the ray.

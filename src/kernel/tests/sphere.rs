@@ -1,7 +1,8 @@
-//! Spheres in f32 against the quadratic formula in f64.
+//! Spheres in f32 against the judge.
 
 use super::sight::{self, Sight};
 use super::{U, aimed, log_uniform, point, positive, rounded, single, start, vector};
+use crate::certified::{self, Enclosure};
 use crate::kernel::sphere;
 use crate::lanes::Vector;
 use glam::DVec3;
@@ -38,19 +39,15 @@ struct Truth {
     off_center: f64,
     /// Half the chord as a length; 0 where there is none.
     half: f64,
-    roots: Option<[f64; 2]>,
+    roots: Option<[Enclosure; 2]>,
 }
 
-/// a·t² + 2b·t + c = 0.
-fn quadratic(case: &Case) -> Truth {
-    let (o, d) = (case.ray.o() - case.center, case.ray.d());
-    let (a, b, c) = (d.dot(d), o.dot(d), o.dot(o) - case.radius * case.radius);
-    let discriminant = b * b - a * c;
-    let root = discriminant.max(0.0).sqrt();
+fn truth(case: &Case) -> Truth {
+    let roots = certified::sphere(&case.ray.judged(), case.center.as_vec3(), single(case.radius)).roots;
     Truth {
         off_center: case.ray.seen_along(case.center).length(),
-        half: root / a.sqrt(),
-        roots: (discriminant >= 0.0).then(|| [(-b - root) / a, (-b + root) / a]),
+        half: roots.map_or(0.0, |[near, far]| (far.low - near.high).max(0.0) / 2.0 * case.ray.d().length()),
+        roots,
     }
 }
 
@@ -76,23 +73,23 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn lines_meet_a_sphere_where_the_textbook_says_away_from_the_limb(case in case()) {
-        let truth = quadratic(&case);
+    fn lines_meet_a_sphere_where_they_do_in_truth_away_from_the_limb(case in case()) {
+        let truth = truth(&case);
         if (truth.off_center - case.radius).abs() > slack(&case) {
             prop_assert_eq!(meet(&case).1.meets, truth.roots.is_some());
         }
     }
 
     #[test]
-    fn both_roots_are_within_their_bound_of_the_textbook_s(case in case()) {
+    fn both_roots_are_within_their_bound_of_the_truth(case in case()) {
         let (_, found) = meet(&case);
-        let truth = quadratic(&case);
+        let truth = truth(&case);
         if let (true, Some(roots)) = (found.meets, truth.roots) {
             let ts = [found.closest_t - found.half_t, found.closest_t + found.half_t];
             for (t, root) in ts.into_iter().zip(roots) {
-                let off = (f64::from(t) - root).abs() * case.ray.d().length();
+                let off = root.distance(f64::from(t)) * case.ray.d().length();
                 let bound = root_slack(&case, &truth);
-                prop_assert!(off <= bound, "{t} for {root}: {} of the bound", off / bound);
+                prop_assert!(off <= bound, "{t} for {root:?}: {} of the bound", off / bound);
             }
         }
     }
@@ -100,15 +97,15 @@ proptest! {
     #[test]
     fn the_nearest_root_is_the_smallest_above_zero(case in case()) {
         let (_, found) = meet(&case);
-        let truth = quadratic(&case);
+        let truth = truth(&case);
         if let (true, Some(roots)) = (found.meets, truth.roots) {
             let (t, hit) = found.nearest(0.0);
             let least = root_slack(&case, &truth) / case.ray.d().length();
-            if roots.iter().all(|root| root.abs() > least) {
-                let expected = roots.into_iter().find(|&root| root > 0.0);
+            if roots.iter().all(|root| root.distance(0.0) > least) {
+                let expected = roots.into_iter().find(|root| root.low > 0.0);
                 prop_assert_eq!(hit, expected.is_some());
                 if let Some(root) = expected {
-                    prop_assert!((f64::from(t) - root).abs() <= least, "{t} for {root}");
+                    prop_assert!(root.distance(f64::from(t)) <= least, "{t} for {root:?}");
                 }
             }
         }
@@ -118,8 +115,9 @@ proptest! {
     #[test]
     fn roots_within_the_slack_touch(case in case(), share in positive(-24.0..1.0)) {
         let (line, found) = meet(&case);
-        let truth = quadratic(&case);
+        let truth = truth(&case);
         if let (true, Some(roots)) = (found.meets, truth.roots) {
+            let roots = roots.map(|root| root.middle());
             let slack = single(share * case.radius * case.radius);
             let length = case.ray.d().length();
             let height = |root: f64| (root * length * truth.half).abs() - f64::from(slack);

@@ -1,7 +1,11 @@
-//! Triangles in f32 against Möller and Trumbore's test in f64.
+//! Triangles in f32 against the judge.
 
 use super::sight::{self, Sight};
-use super::{U, aimed, distance_from_edges, is_a_line, point, positive, reach, rounded, start, vector};
+use super::{
+    U, aimed, cosine, distance_from_edges, is_a_line, log_uniform, point, positive, reach, rounded, singles,
+    size, start, vector,
+};
+use crate::certified::{self, FaceMeeting, Seen};
 use crate::kernel::triangle;
 use glam::DVec3;
 use proptest::prelude::*;
@@ -34,28 +38,8 @@ fn case() -> impl Strategy<Value = Case> {
     })
 }
 
-struct Truth {
-    t: f64,
-    inside: bool,
-    /// |cos| of the angle between ray and normal.
-    cosine: f64,
-}
-
-/// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; none for a triangle seen edge-on.
-fn moller_trumbore(ray: &Sight, [a, b, c]: [DVec3; 3]) -> Option<Truth> {
-    let (o, d) = (ray.o(), ray.d());
-    let (edge_1, edge_2) = (b - a, c - a);
-    let p = d.cross(edge_2);
-    let determinant = edge_1.dot(p);
-    if determinant == 0.0 {
-        return None;
-    }
-    let from_a = o - a;
-    let u = from_a.dot(p) / determinant;
-    let q = from_a.cross(edge_1);
-    let v = d.dot(q) / determinant;
-    let cosine = determinant.abs() / (edge_1.cross(edge_2).length() * d.length());
-    Some(Truth { t: edge_2.dot(q) / determinant, inside: u >= 0.0 && v >= 0.0 && u + v <= 1.0, cosine })
+fn truth(case: &Case) -> FaceMeeting {
+    certified::triangle(&case.ray.judged(), case.corners.map(|corner| corner.as_vec3()))
 }
 
 /// s²/h of a triangle with the longest edge s and the height h above it: no more than 4/3 of s where it is regular, and
@@ -71,24 +55,81 @@ fn meet(case: &Case) -> triangle::Meeting<f32> {
     triangle::meet(&space, corners, 0.0)
 }
 
+/// What a start's rounding to f32 left out, as a share of it.
+fn low() -> impl Strategy<Value = DVec3> {
+    prop_oneof![1 => Just(DVec3::ZERO), 3 => vector(-0.5..0.5)].prop_map(|share| share * 2.0 * U)
+}
+
+/// A ray that starts next to a point inside of a triangle, above it or below by any power of two.
+fn from_the_surface() -> impl Strategy<Value = Case> {
+    let weights = [0.05..0.45, 0.05..0.45_f64];
+    let shape = (point(), positive(-12.0..1.0), [vector(-1.0..1.0), vector(-1.0..1.0), vector(-1.0..1.0)]);
+    (shape, weights, log_uniform(-34.0..-4.0), vector(-1.0..1.0)).prop_map(
+        |((center, size, offsets), [v, w], height, direction)| {
+            let corners @ [a, b, c] = offsets.map(|offset| rounded(center + offset * size));
+            let normal = (b - a).cross(c - a).normalize_or(DVec3::X);
+            let start = a + v * (b - a) + w * (c - a) + height * size * normal;
+            Case { ray: Sight::new(start, direction + 1e-3 * normal), corners }
+        },
+    )
+}
+
+/// What the kernel and the judge find from a start that has a low part, and the kernel's t.
+fn from_start(case: &Case, low: DVec3) -> (triangle::Meeting<f32>, FaceMeeting, f32) {
+    let low = (low * case.ray.o()).as_vec3();
+    let axes = case.ray.axes();
+    let mut space = sight::space::<f32>(&[case.ray]);
+    space.origin_low = Some(axes.map(|axis| low[axis]));
+    let corners = case.corners.map(|corner| corner.as_vec3());
+    let found = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner[axis])), 0.0);
+    let mut line = case.ray.judged();
+    line.origin += low.as_dvec3();
+    let t = found.t(&space);
+    (found, certified::triangle(&line, corners), t)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn inside_is_what_the_textbook_says_away_from_edges(case in case()) {
+    fn inside_is_the_truth_away_from_edges(case in case()) {
         let clear = distance_from_edges(&case.ray, &case.corners) > 6.0 * U * reach(&case.ray, &case.corners);
-        if let (true, Some(truth)) = (clear && !is_a_line(&case.ray, case.corners), moller_trumbore(&case.ray, case.corners)) {
-            prop_assert_eq!(meet(&case).inside, truth.inside);
+        if clear && !is_a_line(&case.ray, case.corners) {
+            prop_assert_eq!(meet(&case).inside, truth(&case).seen == Seen::Inside);
         }
     }
 
+    /// However near to an edge, and from a start of more digits than f32 has.
     #[test]
-    fn t_is_within_its_bound_of_the_textbook_s(case in case()) {
+    fn what_is_inside_for_certain_is_inside_and_what_cannot_be_is_not(case in case(), low in low()) {
+        let (found, truth, _) = from_start(&case, low);
+        let (may_be, is_certain) = found.may_be_inside(size(&case.corners));
+        let seen = truth.seen;
+        prop_assert!(!is_certain || seen == Seen::Inside, "certain, and {seen:?}");
+        prop_assert!(may_be || !(seen == Seen::Inside || seen.is_boundary()), "impossible, and {seen:?}");
+    }
+
+    #[test]
+    fn t_is_within_its_bound_of_the_truth(case in case()) {
         let found = meet(&case);
-        if let (true, Some(truth)) = (found.inside, moller_trumbore(&case.ray, case.corners)) {
-            let off = (f64::from(found.t(&sight::space(&[case.ray]))) - truth.t).abs() * case.ray.d().length();
-            let bound = 6.0 * U * (reach(&case.ray, &case.corners) + length_by_width(&case.corners)) / truth.cosine;
+        let plane = certified::plane_t(&case.ray.judged(), &singles(&case.corners));
+        if let (true, Some(expected)) = (found.inside, plane) {
+            let off = expected.distance(f64::from(found.t(&sight::space(&[case.ray])))) * case.ray.d().length();
+            let cosine = cosine(&case.ray, &case.corners);
+            let bound = 6.0 * U * (reach(&case.ray, &case.corners) + length_by_width(&case.corners)) / cosine;
             prop_assert!(off <= bound, "t is off by {off:e}, which is {} of the bound", off / bound);
+        }
+    }
+
+    /// However near to the plane the ray starts.
+    #[test]
+    fn the_side_of_the_start_is_right_where_it_does_not_touch(case in from_the_surface(), low in low()) {
+        let (found, truth, t) = from_start(&case, low);
+        if let (false, Seen::Inside, Some(expected)) = (found.touches(size(&case.corners)), truth.seen, truth.t) {
+            prop_assert!(expected.low > 0.0 || expected.high < 0.0, "the start is in the plane");
+            if found.may_be_inside(size(&case.corners)).1 {
+                prop_assert_eq!(t > 0.0, expected.low > 0.0);
+            }
         }
     }
 
@@ -120,5 +161,5 @@ proptest! {
 }
 
 fn area_is_lost(case: &Case) -> bool {
-    moller_trumbore(&case.ray, case.corners).is_none_or(|truth| truth.cosine < 1e-3)
+    cosine(&case.ray, &case.corners) < 1e-3
 }
