@@ -1,7 +1,7 @@
 //! Beer's law: what is left of the light that a ray carries through a dielectric to the surface that it leaves by.
 //!
-//! The ends o and p of the way come rounded to f32, so e^(−a·s) is off by at most a·√3·2⁻²⁴·(|o| + |p|) of itself, with the largest
-//! components of o and p, and by its own rounding to f32.
+//! The ends o and p of the way are taken with what their rounding to f32 left out, so e^(−a·s) is off by at most
+//! a·2⁻⁴⁵·(|o| + |p|) of itself, with the largest components of o and p, and by its own rounding to f32.
 
 use super::column::widen_vector;
 use super::elementary::exp;

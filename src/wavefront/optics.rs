@@ -33,7 +33,7 @@ impl<D: Double> Boundary<D> {
     }
 
     /// The refracted direction, unit to 4·2⁻⁵³; means nothing under total internal reflection. Along the surface it is off by
-    /// 16·2⁻⁵³ of the larger of 1 and the ratio, at any angle; how steep it is, near the critical angle, by what the rounding of
+    /// 24·2⁻⁵³ of the larger of 1 and the ratio; how steep it is, near the critical angle, by what the rounding of
     /// the cosine's square makes of the cosine, at most 2⁻²⁵ of that.
     #[inline(always)]
     pub(super) fn refracted(&self, direction: Vector<D>, normal: Vector<D>) -> Vector<D> {
