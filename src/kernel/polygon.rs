@@ -5,7 +5,9 @@
 //! axis each face rounds its own hit point, and rays aimed at the edge of a closed solid get out between two faces; seen
 //! along the ray two faces share the very numbers of their common edge.
 
-use super::ray_space::{Seen, cross, crosses, unclear_area};
+#[cfg(doc)]
+use super::ray_space::unclear_area;
+use super::ray_space::{Seen, cross, crosses};
 use super::sphere::Line;
 use crate::lanes::{Lanes, Mask, Vector};
 
@@ -43,21 +45,19 @@ impl<L: Lanes> Outline<L> {
         self.add_turn(from, to, cross(from, to), zero);
     }
 
-    /// Takes in an edge, and asks whether the foot is too near to it; `size` is the longest distance between two corners.
+    /// Takes in an edge, and asks whether the foot is too near to it: see [`unclear_area`]. What is not among `edges` is no
+    /// edge.
     #[inline(always)]
     pub(crate) fn add_edge_with_doubt(
         &mut self,
         from: &Seen<L>,
         to: &Seen<L>,
-        size: L,
-        edges: L::Mask,
+        (unclear_area, edges): (L, L::Mask),
         zero: L,
-    ) where
-        L: Lanes<Scalar = f32>,
-    {
+    ) {
         let turn = cross(from, to);
         self.add_turn(from, to, turn, zero);
-        self.unclear = self.unclear | (edges & turn.abs().le(unclear_area(from, to, size)));
+        self.unclear = self.unclear | (edges & turn.abs().le(unclear_area));
     }
 
     #[inline(always)]

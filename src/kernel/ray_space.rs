@@ -48,24 +48,18 @@ impl<L: Lanes> RaySpace<L> {
 }
 
 /// How large the area may be that an edge spans with the ray's foot where rounding may have put the foot on the other side of
-/// the edge; `size` is the longest distance s between two of the face's corners.
+/// the edge. `size` is the longest distance s between two corners of the face, `longest_edge` the length ℓ of its longest
+/// edge, `corner` any corner.
 ///
-/// Seen along the ray, corners are at most √2·s apart. Where the foot is inside, or so near to it that rounding counts, none is
-/// farther than that from the foot, and none deeper than |z| + s, z the depth of any one of them. So a corner is off by at
-/// most e = u·(11.3s + 7|z|) a coordinate, see [`RaySpace::see`]. What is decided is right for corners that are moved by that,
-/// so in truth as well unless the foot is within √2·e of the edge; its area is that times the edge's length, |Δx| + |Δy| at
-/// most, and the rounding of the area itself is below 5u·s².
+/// Seen along the ray, corners are no more than √2·s apart on either axis, and edges no longer than √3·ℓ. Where the foot is
+/// inside, or so near to it that rounding counts, no corner is farther from it than that, and none deeper than |z| + s, z the
+/// depth of the given one. So a corner is off by at most e = u·(11.3s + 7|z|) a coordinate, see [`RaySpace::see`]. What is
+/// decided is right for corners that are moved by that, so in truth as well unless the foot is within √2·e of the edge. Its
+/// area is that times the edge's length at most, √6·e·ℓ = u·(28s + 17.2|z|)·ℓ, and the rounding of the area itself is below 5u·s².
 #[inline(always)]
-pub(crate) fn unclear_area<L: Lanes<Scalar = f32>>(from: &Seen<L>, to: &Seen<L>, size: L) -> L {
-    let length = (to.x - from.x).abs() + (to.y - from.y).abs();
-    let off = size + to.z.abs();
-    L::splat(16.0 * UNIT_ROUNDOFF) * (off * length) + L::splat(5.0 * UNIT_ROUNDOFF) * (size * size)
-}
-
-/// The same for every edge of a triangle, none of which is longer than √2·s as seen: u·(16|z| + 28s)·s, rounded up.
-#[inline(always)]
-pub(crate) fn unclear_area_of_triangle<L: Lanes<Scalar = f32>>(corner: &Seen<L>, size: L) -> L {
-    size * L::splat(16.0 * UNIT_ROUNDOFF) * (corner.z.abs() + size + size)
+pub(crate) fn unclear_area<L: Lanes<Scalar = f32>>(corner: &Seen<L>, [size, longest_edge]: [L; 2]) -> L {
+    let off = L::splat(20.0 * UNIT_ROUNDOFF) * longest_edge * (corner.z.abs() + size + size);
+    off + L::splat(5.0 * UNIT_ROUNDOFF) * (size * size)
 }
 
 /// Whether an edge crosses the half-line from the ray's foot along x: seen from a closed outline, the foot is inside where

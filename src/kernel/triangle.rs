@@ -1,7 +1,7 @@
 //! A ray against a triangle.
 
 use super::UNIT_ROUNDOFF;
-use super::ray_space::{RaySpace, Seen, cross, crosses, unclear_area_of_triangle};
+use super::ray_space::{RaySpace, Seen, cross, crosses, unclear_area};
 use crate::lanes::{Lanes, Mask};
 
 /// Where a ray meets the plane of a triangle, and whether that is inside.
@@ -53,7 +53,7 @@ impl<L: Lanes> Meeting<L> {
     where
         L: Lanes<Scalar = f32>,
     {
-        let error = unclear_area_of_triangle(&self.corners[0], size);
+        let error = unclear_area(&self.corners[0], [size, size]);
         let may_be = self.least.ge(-error) | self.largest.le(error);
         (may_be, self.least.gt(error) | self.largest.lt(-error))
     }
@@ -62,7 +62,7 @@ impl<L: Lanes> Meeting<L> {
     /// side; `size` is the length of the longest edge.
     ///
     /// Where the plane is met that near, no corner is deeper than about the longest edge s, so each coordinate is off by at most
-    /// 18.3u·s (see [`unclear_area_of_triangle`]), an area by 6 times that s and its own rounding, 112u·s², and the volume by
+    /// 18.3u·s (see [`unclear_area`]), an area by 6 times that s and its own rounding, 112u·s², and the volume by
     /// 350u·s³.
     #[inline(always)]
     pub(crate) fn touches(&self, size: L) -> L::Mask

@@ -51,6 +51,8 @@ pub(crate) struct PolygonFace {
     pub(crate) point: [f32; 3],
     /// No two corners are farther apart.
     pub(crate) size: f32,
+    /// Its length.
+    pub(crate) longest_edge: f32,
     /// What is nearer to the plane than this touches it.
     pub(crate) slack: f32,
     pub(crate) id: u32,
@@ -63,7 +65,7 @@ pub(crate) struct PolygonFace {
 }
 
 const _: () = assert!(size_of::<TriangleBlock>() == 192 && size_of::<SphereBlock>() == 96);
-const _: () = assert!(size_of::<PolygonFace>() == 48);
+const _: () = assert!(size_of::<PolygonFace>() == 52);
 
 /// How near to a surface a point may be that the kernels cannot tell from one on it, or beyond it: some roundings of the
 /// distances from the point to the primitive's ends, and where they touch that is the primitive's size. Of polygons the height

@@ -192,10 +192,13 @@ impl Hierarchy {
         self.bends[source.index as usize].1 = bend;
         let bounds = bounds_of(&corners);
         let size = (bounds.high - bounds.low).length();
+        let next = corners.iter().cycle().skip(1);
+        let longest_edge = corners.iter().zip(next).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         self.polygons.push(PolygonFace {
             normal: normal.as_vec3().to_array(),
             point: corners[0].to_array(),
             size,
+            longest_edge,
             slack: touch_distance(size) + 2.0 * rounded(bend),
             id: polygon.id.0,
             first_corner: u32::try_from(first).unwrap_or(u32::MAX),

@@ -6,7 +6,7 @@ use super::{Counts, DEAD, Rays};
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
-use crate::kernel::{RaySpace, axes_from};
+use crate::kernel::{RaySpace, axes_from, unclear_area};
 use crate::lanes::{Lanes, Mask, Single, Vector};
 use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{BLOCK, Hierarchy, Place};
@@ -350,11 +350,17 @@ impl Target<'_> {
         let [x, y, z] = ray.axes.map(|axis| &hierarchy.corners[axis][..]);
         let corners =
             |from: usize| space.see([F::load(&x[from..]), F::load(&y[from..]), F::load(&z[from..])]);
+        let doubt = if DEPARTING {
+            let corner = ray.space::<f32, DEPARTING>().see([x[first], y[first], z[first]]);
+            unclear_area(&corner, [face.size, face.longest_edge])
+        } else {
+            0.0
+        };
         for edge in (first..first + edges).step_by(F::WIDTH) {
             // Beyond the last edge there are edges from the first corner to itself, which nothing crosses.
             let (from, to, in_use) = (corners(edge), corners(edge + 1), (first + edges - edge).min(F::WIDTH));
             if DEPARTING {
-                outline.add_edge_with_doubt(&from, &to, F::splat(face.size), F::first(in_use), zero);
+                outline.add_edge_with_doubt(&from, &to, (F::splat(doubt), F::first(in_use)), zero);
             } else {
                 outline.add_edge(&from, &to, zero);
             }

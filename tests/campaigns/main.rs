@@ -3,6 +3,7 @@
 //!
 //! ```sh
 //! WAVELANE_CAMPAIGN_RAYS=1000000000 cargo test --release --test campaigns watertight -- --nocapture
+//! WAVELANE_CAMPAIGN_RAYS=100000000 cargo test --release --test campaigns self_hits -- --nocapture
 //! ```
 //!
 //! What such runs found is written down in docs/accuracy.md, with the bound that it proves: 0 of N says, with 95 %
@@ -14,6 +15,8 @@
     reason = "a test may end where it finds what it does not expect"
 )]
 
+mod random;
+mod self_hits;
 mod watertight;
 
 /// How many rays a campaign traces: what the environment says, or else as many as given.

@@ -78,7 +78,7 @@ fn what_is_nearer_by_less_than_f64_can_tell_is_nearer() {
     for (gap, first) in [(-1.0, 0), (0.0, 0), (1.0, 1)] {
         let mut geometry = Geometry::default();
         add_square(&mut geometry, 1.0, 1e-3, OPAQUE);
-        let z = 1e-3 + f64::from(gap) / f64::from(1 << 24);
+        let z = 1e-3 + gap / f64::from(1 << 24);
         #[expect(clippy::cast_possible_truncation, reason = "a multiple of its last place")]
         add_square(&mut geometry, 1.0, z as f32, OPAQUE);
         let from_afar = Stretch { origin: DVec3::new(0.25, 0.125, 2.0_f64.powi(31)), ..down(0.0, 0.0) };

@@ -2,11 +2,12 @@
 
 use super::sight::{self, Sight};
 use super::{
-    U, aimed, cosine, distance_from_edges, edges, point, positive, reach, rounded, singles, size, start,
-    vector,
+    U, aimed, cosine, distance_from_edges, edges, point, positive, reach, rounded, single, singles, size,
+    start, vector,
 };
 use crate::certified::{self, Seen};
 use crate::kernel::polygon::{self, Outline};
+use crate::kernel::unclear_area;
 use crate::lanes::Vector;
 use glam::DVec3;
 use proptest::prelude::*;
@@ -101,9 +102,11 @@ proptest! {
         let Case { ray, corners } = &case;
         let space = sight::space::<f32>(&[*ray]);
         let from_ray = |corner: DVec3| space.see(ray.axes().map(|axis| corner.as_vec3()[axis]));
+        let longest_edge = edges(corners).map(|[from, to]| from.distance(to)).fold(0.0, f64::max);
+        let unclear_area = unclear_area(&from_ray(corners[0]), [size(corners), single(longest_edge)]);
         let mut outline = Outline::<f32>::new();
         for [from, to] in edges(corners) {
-            outline.add_edge_with_doubt(&from_ray(from), &from_ray(to), size(corners), true, 0.0);
+            outline.add_edge_with_doubt(&from_ray(from), &from_ray(to), (unclear_area, true), 0.0);
         }
         let seen = seen(ray, corners);
         if seen != Seen::EdgeOn && !outline.unclear {

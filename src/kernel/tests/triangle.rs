@@ -39,7 +39,7 @@ fn case() -> impl Strategy<Value = Case> {
 }
 
 fn truth(case: &Case) -> FaceMeeting {
-    certified::triangle(&case.ray.judged(), case.corners.map(|corner| corner.as_vec3()))
+    certified::triangle(&case.ray.judged(), case.corners.map(DVec3::as_vec3))
 }
 
 /// s²/h of a triangle with the longest edge s and the height h above it: no more than 4/3 of s where it is regular, and
@@ -80,7 +80,7 @@ fn from_start(case: &Case, low: DVec3) -> (triangle::Meeting<f32>, FaceMeeting, 
     let axes = case.ray.axes();
     let mut space = sight::space::<f32>(&[case.ray]);
     space.origin_low = Some(axes.map(|axis| low[axis]));
-    let corners = case.corners.map(|corner| corner.as_vec3());
+    let corners = case.corners.map(DVec3::as_vec3);
     let found = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner[axis])), 0.0);
     let mut line = case.ray.judged();
     line.origin += low.as_dvec3();

@@ -4,9 +4,9 @@ use super::super::candidate::{self, Candidate, Start, View};
 use super::super::exact::{self, Nearest, Spot};
 use super::super::{Counts, DEAD, NOTHING};
 use super::{Columns, PACKET, Packet};
-use crate::kernel::RaySpace;
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
+use crate::kernel::{RaySpace, unclear_area};
 use crate::lanes::{Mask, Single, Vector};
 use crate::prepare::bvh::Node;
 use crate::prepare::{BLOCK, Hierarchy, Place};
@@ -151,10 +151,15 @@ impl Packet {
         let corner = |index: usize| space.see([F::splat(x[index]), F::splat(y[index]), F::splat(z[index])]);
         let mut outline = Outline::<F>::new();
         let mut from = corner(first);
+        let doubt = if DEPARTING {
+            unclear_area(&from, [F::splat(face.size), F::splat(face.longest_edge)])
+        } else {
+            zero
+        };
         for index in first + 1..=first + face.edges as usize {
             let to = corner(index);
             if DEPARTING {
-                outline.add_edge_with_doubt(&from, &to, F::splat(face.size), mask, zero);
+                outline.add_edge_with_doubt(&from, &to, (doubt, mask), zero);
             } else {
                 outline.add_edge(&from, &to, zero);
             }

@@ -3,6 +3,7 @@
 use crate::kernel::bounds::{self, PADDING};
 use crate::kernel::polygon::Outline;
 use crate::kernel::tests::sight::{self, Sight};
+use crate::kernel::unclear_area;
 use crate::lanes::Vector;
 use crate::prepare::bvh::{Bounds, WIDTH};
 use crate::prepare::{Hierarchy, Place};
@@ -105,10 +106,11 @@ impl Query {
                             space.see(axes.map(|axis| hierarchy.corners[axis][index]))
                         };
                         let mut outline = Outline::<f32>::new();
+                        let doubt = unclear_area(&corner(0), [face.size, face.longest_edge]);
                         for edge in 0..face.edges {
                             let (from, to) = (corner(edge), corner(edge + 1));
                             if DEPARTING {
-                                outline.add_edge_with_doubt(&from, &to, face.size, true, 0.0);
+                                outline.add_edge_with_doubt(&from, &to, (doubt, true), 0.0);
                             } else {
                                 outline.add_edge(&from, &to, 0.0);
                             }

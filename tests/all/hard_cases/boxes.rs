@@ -32,7 +32,7 @@ fn tiles([columns, rows]: [u8; 2], side: f32, place: impl Fn(f32, f32) -> [f32; 
 const ZERO_TIMES_INFINITY: Case = Case {
     number: 27,
     name: "0 · ∞",
-    shapes: || Made::OfBoth.shapes(&tiles([8, 8], 1.0, |x, y| [x, y, 1.0])),
+    shapes: || Made::Both.shapes(&tiles([8, 8], 1.0, |x, y| [x, y, 1.0])),
     rays: || {
         let halves = (1..16_u8).map(|half| f32::from(half) / 2.0);
         let points = halves.clone().flat_map(|x| halves.clone().map(move |y| [x, y, -1.0]));
@@ -64,7 +64,7 @@ const TANGENTS: Case = Case {
 const NEGATIVE_ZERO: Case = Case {
     number: 28,
     name: "negative zero",
-    shapes: || Made::OfBoth.shapes(&cube_faces(4, |point| point)),
+    shapes: || Made::Both.shapes(&cube_faces(4, |point| point)),
     rays: || {
         let origin = [0.5, -0.25, 0.0_f32];
         let mut rays = Vec::new();
@@ -114,7 +114,7 @@ const FUSED_SLAB: Case = Case {
     name: "fused slab",
     shapes: || {
         let wall = tiles([9, 9], 1.0, |y, z| [1e6, y - 4.5, z - 4.5]);
-        Made::OfBoth.shapes(&wall)
+        Made::Both.shapes(&wall)
     },
     rays: || {
         let mut rays = Vec::new();
@@ -125,7 +125,7 @@ const FUSED_SLAB: Case = Case {
             // 1 / 0.57735026; beyond the last tile there is none.
             rays.push(match y {
                 6.0 => to_wall.misses(),
-                _ => to_wall.hits_something_at(1.732_050_838_656_126_7, Ulps(4.0)),
+                _ => to_wall.hits_something_at(1.732_050_838_656_126_6, Ulps(4.0)),
             });
         }
         rays
@@ -149,21 +149,21 @@ fn rays_at_corners_of_boxes() -> Vec<Aimed> {
 const SLAB_ROUNDING_OF_POLYGONS: Case = Case {
     number: 31,
     name: "slab rounding, of polygons",
-    shapes: || Made::OfPolygons.shapes(&corners_of_boxes()),
+    shapes: || Made::Polygons.shapes(&corners_of_boxes()),
     rays: rays_at_corners_of_boxes,
 };
 
 const SLAB_ROUNDING_OF_TRIANGLES: Case = Case {
     number: 31,
     name: "slab rounding, of triangles",
-    shapes: || Made::OfTriangles.shapes(&corners_of_boxes()),
+    shapes: || Made::Triangles.shapes(&corners_of_boxes()),
     rays: rays_at_corners_of_boxes,
 };
 
 const SLAB_ROUNDING_OF_BOTH: Case = Case {
     number: 31,
     name: "slab rounding, of both",
-    shapes: || Made::OfBoth.shapes(&corners_of_boxes()),
+    shapes: || Made::Both.shapes(&corners_of_boxes()),
     rays: rays_at_corners_of_boxes,
 };
 
@@ -171,7 +171,7 @@ const SLAB_ROUNDING_OF_BOTH: Case = Case {
 const FLAT_BOXES: Case = Case {
     number: 32,
     name: "flat boxes",
-    shapes: || Made::OfBoth.shapes(&tiles([7, 7], 0.3, |x, z| [x - 1.05, 0.0, z - 1.05])),
+    shapes: || Made::Both.shapes(&tiles([7, 7], 0.3, |x, z| [x - 1.05, 0.0, z - 1.05])),
     rays: || {
         let mut rays = Vec::new();
         for z in [0.25, -0.7, 0.5] {

@@ -46,7 +46,7 @@ fn case_26_coincident_surfaces() {
         for others in [0, 3, 40, 700_u32] {
             let beside = |index: u32| {
                 let [x, y, z] = [1, 2, 3].map(|axis| (10.0 * spread(index * 3 + axis)) as f32);
-                let x = if index % 2 == 0 { 15.0 + x } else { -15.0 - x };
+                let x = if index.is_multiple_of(2) { 15.0 + x } else { -15.0 - x };
                 Sphere([x, y - 5.0, z - 5.0], 0.05)
             };
             let all = first.iter().cloned().chain((0..others).map(beside)).chain(second.iter().cloned());

@@ -55,7 +55,7 @@ fn jittered_globe() -> Vec<Vec<[f32; 3]>> {
 const JITTERED_GLOBE: Case = Case {
     number: 15,
     name: "closed jittered latitude-longitude mesh",
-    shapes: || Made::OfTriangles.shapes(&jittered_globe()),
+    shapes: || Made::Triangles.shapes(&jittered_globe()),
     rays: || {
         let at_seams = seams(&jittered_globe()).into_iter().map(|point| aimed_at([0.0; 3], point));
         at_seams.map(|ray| ray.hits_something().on_faces(Faces::Exactly(1))).collect()
@@ -138,7 +138,7 @@ fn far_globe() -> Vec<Vec<[f32; 3]>> {
 const FAR_MESH: Case = Case {
     number: 23,
     name: "mesh far from the origin",
-    shapes: || Made::OfTriangles.shapes(&far_globe()),
+    shapes: || Made::Triangles.shapes(&far_globe()),
     rays: || {
         let targets = seams(&far_globe()).into_iter().step_by(1009);
         let origins = [[0.0; 3], [0.5, -0.25, 1.0], [-1.0, 0.0, -0.5]];
@@ -152,7 +152,7 @@ const FAR_MESH: Case = Case {
 const DOUBLE_HIT: Case = Case {
     number: 25,
     name: "double hit on a shared edge",
-    shapes: || Made::OfTriangles.shapes(&cube_faces(1, turned)),
+    shapes: || Made::Triangles.shapes(&cube_faces(1, turned)),
     rays: || {
         let outside = [[4.0, 0.3, -0.2], [-1.5, 3.0, 2.5], [0.1, 0.2, -7.0], [-2.0, -2.0, -2.0_f32]];
         let targets = seams(&cube_faces(1, turned));

@@ -18,7 +18,7 @@ hard_cases! {
 
 /// A ball in a turned cube.
 fn ball_in_cube() -> Vec<Shape> {
-    let cube = Made::OfBoth.shapes(&cube_faces(3, |point| 4.0 * turned(point)));
+    let cube = Made::Both.shapes(&cube_faces(3, |point| 4.0 * turned(point)));
     [Sphere([0.0, 0.0, -2.0], 0.5)].into_iter().chain(cube).collect()
 }
 
@@ -60,7 +60,7 @@ const NO_LENGTH: Case = Case {
 /// the machine may be busy; to try all of these squares takes far longer.
 #[test]
 fn case_33_costs_no_time() {
-    let squares = Made::OfPolygons.shapes(&cube_faces(24, |point| 4.0 * turned(point)));
+    let squares = Made::Polygons.shapes(&cube_faces(24, |point| 4.0 * turned(point)));
     let scene = scene(&[ball_in_cube(), squares].concat());
     let prepared = Prepared::new(&scene).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

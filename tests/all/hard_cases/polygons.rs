@@ -33,7 +33,7 @@ fn rays_at_box(place: Placing) -> Vec<Aimed> {
 }
 
 fn box_of_polygons(place: Placing) -> Vec<Shape> {
-    Made::OfPolygons.shapes(&cube_faces(1, place))
+    Made::Polygons.shapes(&cube_faces(1, place))
 }
 
 const BOX_AT_ORIGIN: Case = Case {
@@ -306,14 +306,14 @@ fn rays_at_bent(height: f32) -> Vec<Aimed> {
 const BENT_LEAST: Case = Case {
     number: 40,
     name: "non-planar quad, by 10⁻⁷",
-    shapes: || Made::OfPolygons.shapes(&bent(1e-7)),
+    shapes: || Made::Polygons.shapes(&bent(1e-7)),
     rays: || rays_at_bent(1e-7),
 };
 
 const BENT: Case = Case {
     number: 40,
     name: "non-planar quad, by 10⁻⁴",
-    shapes: || Made::OfPolygons.shapes(&bent(1e-4)),
+    shapes: || Made::Polygons.shapes(&bent(1e-4)),
     rays: || rays_at_bent(1e-4),
 };
 

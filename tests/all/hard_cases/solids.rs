@@ -22,16 +22,16 @@ pub(super) fn aimed_at(origin: [f32; 3], target: DVec3) -> Aimed {
 /// Faces of more than three corners as they are, or as fans of triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Made {
-    OfPolygons,
-    OfTriangles,
+    Polygons,
+    Triangles,
     /// Every other face.
-    OfBoth,
+    Both,
 }
 
 impl Made {
     pub(super) fn shapes(self, faces: &[Vec<[f32; 3]>]) -> Vec<Shape> {
         let face = |(index, corners): (usize, &Vec<[f32; 3]>)| {
-            let whole = self == Self::OfPolygons || (self == Self::OfBoth && index % 2 == 0);
+            let whole = self == Self::Polygons || (self == Self::Both && index % 2 == 0);
             if whole {
                 return vec![Shape::Polygon(corners.clone())];
             }

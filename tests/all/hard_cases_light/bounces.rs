@@ -31,7 +31,7 @@ fn of(material: &str, shapes: &str) -> Scene {
     ))
 }
 
-/// 49. Fifty bounces between two facing mirrors.
+/// Case 49: Fifty bounces between two facing mirrors.
 #[test]
 fn case_49_fifty_bounces_between_facing_mirrors() {
     for kind in ["triangle", "polygon"] {
@@ -51,7 +51,7 @@ fn case_49_fifty_bounces_between_facing_mirrors() {
     }
 }
 
-/// 49. Fifty total internal reflections along a fibre and around a ball: seen from inside, nothing gets out.
+/// Case 49: Fifty total internal reflections along a fibre and around a ball: seen from inside, nothing gets out.
 #[test]
 fn case_49_fifty_total_internal_reflections_in_a_fibre() {
     for kind in ["triangle", "polygon"] {

@@ -123,7 +123,7 @@ impl Contact {
             }
             Caster::Triangle => {
                 let at = point + l * (gap / l.z);
-                let corners = TRIANGLE.map(|corner| corner.as_dvec3());
+                let corners = TRIANGLE.map(Vec3::as_dvec3);
                 (0..3).all(|index| {
                     let (from, to) = (corners[index], corners[(index + 1) % 3]);
                     (to - from).normalize().cross(at - from).z > -more
@@ -166,7 +166,7 @@ impl Contact {
 const CASTERS: [Caster; 4] =
     [Caster::Box { kind: "polygon" }, Caster::Box { kind: "triangle" }, Caster::Sphere, Caster::Triangle];
 
-/// 52. Near-coincident gap: a shadow is kept while the gap is 16u of the largest coordinate, at any incidence under 80°,
+/// Case 52: Near-coincident gap: a shadow is kept while the gap is 16u of the largest coordinate, at any incidence under 80°,
 /// however the case is turned and wherever it lies.
 #[test]
 fn case_52_near_coincident_gap() {
@@ -202,7 +202,7 @@ fn case_52_near_coincident_gap_where_coordinates_hold_it() {
     }
 }
 
-/// 51. Fixed offset: what a contact shadow is does not depend on the scale of the scene.
+/// Case 51: Fixed offset: what a contact shadow is does not depend on the scale of the scene.
 #[test]
 fn case_51_contact_shadows_at_every_scale() {
     for caster in CASTERS {

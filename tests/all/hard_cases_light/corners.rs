@@ -174,7 +174,7 @@ fn check(corner: Corner) -> Judged {
     judged
 }
 
-/// 54. Concave corner: no leak and no acne outside 16u of the coordinates from the seam, for lights and for mirrors.
+/// Case 54: Concave corner: no leak and no acne outside 16u of the coordinates from the seam, for lights and for mirrors.
 #[test]
 fn case_54_concave_corner() {
     for kind in ["triangle", "polygon"] {

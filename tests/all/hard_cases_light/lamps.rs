@@ -64,7 +64,7 @@ impl Lamp {
     }
 }
 
-/// 53. Wall just before the lamp: it blocks down to 16u of the distance, and just behind the lamp it does not.
+/// Case 53: Wall just before the lamp: it blocks down to 16u of the distance, and just behind the lamp it does not.
 #[test]
 fn case_53_wall_just_before_the_lamp() {
     for wall in [Wall::Face("polygon"), Wall::Face("triangle"), Wall::Ball, Wall::Bulb] {

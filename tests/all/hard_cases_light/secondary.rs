@@ -30,7 +30,7 @@ fn traced(scene: &Scene, rays: &RaySet) -> Vec<(Engine, Hits)> {
     [by_reference].into_iter().chain(wavefront).collect()
 }
 
-/// 6. Leaving the surface: the event says on which side a ray is, and not the sign of a root that is 0 but for rounding.
+/// Case 6: Leaving the surface: the event says on which side a ray is, and not the sign of a root that is 0 but for rounding.
 /// A ray that leaves a ball outward never meets it, whatever the direction as it was rounded; inward, it meets the far side,
 /// at −2(o − c)·d / d·d.
 #[test]
@@ -139,7 +139,7 @@ fn sphere(center: Vec3, radius: f32) -> String {
     format!("[[sphere]]\ncenter = {:?}\nradius = {radius:e}\nmaterial = \"m\"\n", center.to_array())
 }
 
-/// 50. o + t·d far away: a start that is found from so far off is on its surface all the same. In f32 this is asked where the
+/// Case 50: o + t·d far away: a start that is found from so far off is on its surface all the same. In f32 this is asked where the
 /// primary ray's own hit is certain: a ray that passes an outline by less than f32 can tell may be taken to meet the far side
 /// from inside, and what it is mirrored to is then inside.
 #[test]
@@ -182,7 +182,7 @@ fn smooth_ball() -> String {
     obj
 }
 
-/// 55. Shadow terminator: where the light grazes, the edge of light and dark on a coarse ball follows its faces, since a
+/// Case 55: Shadow terminator: where the light grazes, the edge of light and dark on a coarse ball follows its faces, since a
 /// face that looks away from the light is dark whatever its vertex normals say. That is the model's answer and not rounding,
 /// so it is compared with the true ball's and reported, and the engines are held to agree on it. It stays near the true
 /// edge: within a face, the ball's normal is not farther from the face's than half the face's diagonal.
@@ -239,7 +239,7 @@ fn case_55_shadow_terminator() {
     }
 }
 
-/// 56. Reflection below the facet: vertex normals lean 60° over, and a mirrored ray still leaves on the side that it came
+/// Case 56: Reflection below the facet: vertex normals lean 60° over, and a mirrored ray still leaves on the side that it came
 /// from. Where the facet's normal is one of the axes, r·n ≥ 0 to the bit; where it is rounded itself, to 2u.
 #[test]
 fn case_56_reflection_below_the_facet() {

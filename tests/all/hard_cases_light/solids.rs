@@ -204,7 +204,7 @@ fn ways_are_as_long_as_they_are(silhouettes: bool) {
     assert!(looks > 1000, "{looks} rays");
 }
 
-/// 48. Glass silhouette edge: where a ray passes exactly through an edge or a corner, it is inside as long as geometry says.
+/// Case 48: Glass silhouette edge: where a ray passes exactly through an edge or a corner, it is inside as long as geometry says.
 /// Edges of the outline, where it may be inside not at all, are the next test's.
 #[test]
 fn case_48_the_way_through_an_edge_is_as_long_as_it_is() {
@@ -219,7 +219,7 @@ fn case_48_the_way_along_the_outline_is_as_long_as_it_is() {
     ways_are_as_long_as_they_are(true);
 }
 
-/// 47. Beer deep, away from the origin: what a way absorbs depends on its length and not on where it lies. e^(−a·s) to
+/// Case 47: Beer deep, away from the origin: what a way absorbs depends on its length and not on where it lies. e^(−a·s) to
 /// (a·s + 4)·4u, and to what the direction's rounding, u of the eye's distance, makes of s at faces seen at 60° or less.
 #[test]
 fn case_47_absorption_does_not_depend_on_where_the_way_lies() {
@@ -327,7 +327,7 @@ impl Pairs<'_> {
     }
 }
 
-/// 48. Glass silhouette edge: faces are entered and left in pairs, and no pixel is black. Light that is not absorbed, split
+/// Case 48: Glass silhouette edge: faces are entered and left in pairs, and no pixel is black. Light that is not absorbed, split
 /// nowhere and the same all around is the same through any glass.
 #[test]
 fn case_48_glass_is_entered_and_left_in_pairs() {

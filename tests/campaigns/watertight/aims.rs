@@ -1,8 +1,8 @@
 //! How rays are aimed.
 
 use super::body::Body;
-use super::random::Random;
 use super::starts::{Start, Starts};
+use crate::random::Random;
 use glam::DVec3;
 
 /// What rays are aimed at.
@@ -18,10 +18,13 @@ pub(super) enum Aim {
     Seam,
     /// Along axes through corners; in a lattice, along axes and to points of it, all in small whole numbers and halves.
     Lattice,
+    /// From within the plane of a face, at points of its edges and at its corners.
+    Beside,
 }
 
 impl Aim {
-    pub(super) const ALL: [Self; 5] = [Self::Random, Self::Edge, Self::Corner, Self::Seam, Self::Lattice];
+    pub(super) const ALL: [Self; 6] =
+        [Self::Random, Self::Edge, Self::Corner, Self::Seam, Self::Lattice, Self::Beside];
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -30,6 +33,7 @@ impl Aim {
             Self::Corner => "corners",
             Self::Seam => "seams",
             Self::Lattice => "lattice",
+            Self::Beside => "in planes",
         }
     }
 }
@@ -37,7 +41,7 @@ impl Aim {
 /// Whether neighbours in a list are alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// All from one start, sorted by direction.
+    /// All from near one start, sorted by direction.
     Coherent,
     /// As they come.
     Shuffled,
@@ -60,6 +64,15 @@ impl Shot {
     }
 }
 
+/// Whether a body has starts for such rays from inside.
+pub(super) fn is_possible(body: &Body, starts: &Starts, aim: Aim) -> bool {
+    match aim {
+        Aim::Beside => !starts.beside.is_empty(),
+        Aim::Lattice => body.lattice.is_some() || !starts.lines.is_empty(),
+        Aim::Random | Aim::Edge | Aim::Corner | Aim::Seam => true,
+    }
+}
+
 /// Rays from inside.
 pub(super) fn inside(
     body: &Body,
@@ -71,16 +84,15 @@ pub(super) fn inside(
     let common = starts.any(random);
     let shots = (0..count).map(|at| {
         let start = if order == Order::Coherent { common } else { starts.any(random) };
+        let start = start.nearby(random);
         let share = at as f64 / count as f64;
         let shot = match (aim, body.lattice) {
             (Aim::Lattice, Some(lattice)) => on_lattice(lattice, random),
-            (Aim::Lattice, None) if starts.lines.is_empty() => {
-                Shot::new(start, target(body, Aim::Corner, share, random) - start.at)
-            }
             (Aim::Lattice, None) => {
-                let line = starts.lines[random.below(starts.lines.len())];
+                let line = starts.lines[random.below(starts.lines.len())].nearby(random);
                 Shot::new(line.start, line.direction)
             }
+            (Aim::Beside, _) => beside(body, starts, random),
             (Aim::Random, _) => Shot::new(start, random.direction()),
             _ => Shot::new(start, target(body, aim, share, random) - start.at),
         };
@@ -114,7 +126,7 @@ pub(super) fn outside(body: &Body, aim: Aim, count: usize, random: &mut Random) 
             }
             _ => (start, target(body, aim, share, random) - start),
         };
-        of_any_length(Shot::new(Start { at: start, is_star: false }, direction), random)
+        of_any_length(Shot::new(Start::exactly(start, false), direction), random)
     });
     shots.collect()
 }
@@ -125,7 +137,7 @@ fn target(body: &Body, aim: Aim, share: f64, random: &mut Random) -> DVec3 {
     match aim {
         Aim::Corner | Aim::Lattice => body.corners[random.below(body.corners.len())],
         Aim::Seam => on(body.seams[(share * body.seams.len() as f64) as usize], random.dyadic()),
-        Aim::Edge | Aim::Random => {
+        Aim::Edge | Aim::Random | Aim::Beside => {
             let edge = body.edges[random.below(body.edges.len())];
             on(edge, random.share_of_an_edge())
         }
@@ -143,7 +155,7 @@ fn on_lattice((first, cell, cells): (DVec3, f64, usize), random: &mut Random) ->
         target[random.below(3)] = if random.chance(0.5) { 0.0 } else { cells as f64 };
         target - at
     };
-    Shot::new(Start { at: first + cell * at, is_star: true }, direction)
+    Shot::new(Start::exactly(first + cell * at, true), direction)
 }
 
 fn half_steps(random: &mut Random, least: usize, most: usize) -> DVec3 {
@@ -154,6 +166,16 @@ fn half_steps(random: &mut Random, least: usize, most: usize) -> DVec3 {
         let halves = if whole { (halves / 2 * 2).max(least.next_multiple_of(2)) } else { halves };
         halves as f64 / 2.0
     }))
+}
+
+/// In the plane of a face, as far as f32 can tell.
+fn beside(body: &Body, starts: &Starts, random: &mut Random) -> Shot {
+    let beside = starts.beside[random.below(starts.beside.len())].nearby(body, random);
+    let corners = &body.faces[beside.face].corners;
+    let from = random.below(corners.len());
+    let share = if random.chance(0.3) { 0.0 } else { random.share_of_an_edge() };
+    let target = corners[from].lerp(corners[(from + 1) % corners.len()], share);
+    Shot::new(beside.start, target - beside.start.at)
 }
 
 /// Directions need not be unit vectors: one in four is made longer or shorter by a power of two.

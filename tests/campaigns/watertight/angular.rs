@@ -1,7 +1,7 @@
 //! Closed surfaces with flat sides: cubes, prisms over concave outlines, and boxes of a lattice's squares.
 
-use super::random::Random;
 use super::solid::{Made, Solid, prism};
+use crate::random::Random;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -27,6 +27,33 @@ pub(super) fn u_prism(sides: Made) -> Solid {
     let outline = [(0, 0), (3, 0), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)].map(on_grid);
     let inside = [(0.5, 0.5), (1.5, 0.6), (2.5, 0.4), (0.4, 2.0), (2.6, 2.0)].map(DVec2::from);
     prism(&outline, &inside, None, sides)
+}
+
+/// A slab with a column on it, at its edge. The slab's top is a U whose plane cuts the column between the U's arms: from there
+/// rays in that plane have an arm before and one behind them.
+pub(super) fn column_on_a_slab() -> Solid {
+    let u = [(0, 0), (3, 0), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)].map(on_grid);
+    let bottom = [u[0], u[1], u[2], u[7]].map(|point| point.extend(-1.0));
+    let top = [u[3], u[4], u[5], u[6]].map(|point| point.extend(1.0));
+    let corners = bottom.into_iter().chain(u.map(|point| point.extend(0.0))).chain(top).collect();
+    let inside = [(1.5, 1.5, -0.5), (1.5, 2.0, 0.5), (0.5, 0.5, -0.5)].map(DVec3::from);
+    let mut solid = Solid::new(corners, inside.to_vec());
+    let faces: [&[usize]; 10] = [
+        &[0, 3, 2, 1],
+        &[4, 5, 6, 7, 8, 9, 10, 11],
+        &[14, 13, 12, 15],
+        &[8, 7, 12, 13],
+        &[10, 9, 14, 15],
+        &[9, 8, 13, 14],
+        &[3, 0, 4, 11],
+        &[1, 2, 6, 5],
+        &[0, 1, 5, 4],
+        &[2, 3, 11, 10, 15, 12, 7, 6],
+    ];
+    for (strip, face) in faces.into_iter().enumerate() {
+        solid.add(strip, face);
+    }
+    solid
 }
 
 fn on_grid((x, y): (i32, i32)) -> DVec2 {

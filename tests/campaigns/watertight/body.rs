@@ -1,8 +1,8 @@
 //! A closed surface in its place: corners rounded to f32, a scene of it, and points that are certainly inside.
 
 use super::flat::Flat;
-use super::random::Random;
 use super::solid::{Face, Solid};
+use crate::random::Random;
 use glam::{DQuat, DVec3, Vec3};
 use wavelane::scene::{
     Added, Camera, Geometry, GeometryProblem, ImageSettings, Material, MaterialId, Projection,
@@ -94,18 +94,23 @@ impl Body {
         scene_of(geometry(&corners, &faces).expect("they were accepted before"))
     }
 
-    /// Whether a point is inside, and so far from the surface that no f32 tracer need be wrong about it.
-    pub(super) fn is_certainly_inside(&self, point: DVec3) -> bool {
-        if !self.faces.iter().all(|face| face.is_clear_of(point)) {
-            return false;
+    /// How far around a point all is inside, and so far from the surface that no f32 tracer need be wrong about it; none
+    /// where the point itself is not.
+    pub(super) fn room_around(&self, point: DVec3) -> Option<f64> {
+        let mut room = f64::INFINITY;
+        for face in &self.faces {
+            room = room.min(face.clearance(point, room));
+            if room <= 0.0 {
+                return None;
+            }
         }
         let turns = self.faces.iter().map(|face| face.solid_angle(point)).sum::<f64>();
-        (turns / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.1
+        ((turns / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.1).then_some(room)
     }
 
-    /// Whether every ray from a point meets the surface once, however corners are rounded.
-    pub(super) fn is_star_shaped_about(&self, point: DVec3) -> bool {
-        self.faces.iter().all(|face| face.is_seen_from_inside(point))
+    /// Whether every ray from within some reach of a point meets the surface once, however corners are rounded.
+    pub(super) fn is_star_shaped_about(&self, point: DVec3, reach: f64) -> bool {
+        self.faces.iter().all(|face| face.is_seen_from_inside(point, reach))
     }
 }
 

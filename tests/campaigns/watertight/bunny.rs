@@ -1,7 +1,7 @@
 //! A scanned mesh, its holes closed.
 
-use super::random::Random;
 use super::solid::{Face, Solid};
+use crate::random::Random;
 use glam::DVec3;
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;

@@ -51,10 +51,12 @@ impl Flat {
         rest.windows(2).map(angle).sum()
     }
 
-    /// Whether a point is farther from the face than an f32 tracer may be wrong about it.
-    pub(super) fn is_clear_of(&self, point: DVec3) -> bool {
+    /// How far a point may move before an f32 tracer may be wrong about on which side of the face it is; below 0 where it may
+    /// be already. Not exact where it is more than `enough`.
+    pub(super) fn clearance(&self, point: DVec3, enough: f64) -> f64 {
         let error = self.error(point);
-        self.normal.dot(point - self.corners[0]).abs() > error + self.bend || self.distance(point) > error
+        let from_plane = self.normal.dot(point - self.corners[0]).abs() - self.bend - error;
+        if from_plane > enough { from_plane } else { self.distance(point) - error }
     }
 
     /// 16 roundings of the distance to the farthest corner, for a triangle also of s²/h, its longest edge squared over the
@@ -70,10 +72,11 @@ impl Flat {
         self.error(DVec3::new(ox, oy, oz)) / self.normal.dot(DVec3::new(dx, dy, dz)).abs()
     }
 
-    /// Whether a point sees the inner side of the face and sees it so wide that no rounding of corners could turn it around.
-    pub(super) fn is_seen_from_inside(&self, point: DVec3) -> bool {
-        let height = self.normal.dot(self.corners[0] - point);
-        let farthest = self.farthest(point);
+    /// Whether every point within some reach of a point sees the inner side of the face, and sees it so wide that no rounding
+    /// of corners could turn it around.
+    pub(super) fn is_seen_from_inside(&self, point: DVec3, reach: f64) -> bool {
+        let height = self.normal.dot(self.corners[0] - point) - reach;
+        let farthest = self.farthest(point) + reach;
         // Seen from there its width is foreshortened to width·height/farthest; corners are off by some 5u·farthest.
         height > 8.0 * self.bend && height * self.width > 32.0 * UNIT_ROUNDOFF * farthest * farthest
     }

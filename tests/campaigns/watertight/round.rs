@@ -1,7 +1,7 @@
 //! Closed surfaces that are round, or were: globes, a ring, needles.
 
-use super::random::Random;
 use super::solid::{Made, Solid};
+use crate::random::Random;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 //! Closed surfaces as lists of corners and faces, before they are placed anywhere.
 
-use super::random::Random;
+use crate::random::Random;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 

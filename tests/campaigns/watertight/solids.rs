@@ -1,17 +1,17 @@
 //! Which closed surfaces are shot at.
 
-use super::angular::{cube, l_prism, lattice, star_prism, u_prism};
+use super::angular::{column_on_a_slab, cube, l_prism, lattice, star_prism, u_prism};
 use super::bunny::{self, bunny};
-use super::random::Random;
 use super::round::{bumpy_globe, globe_of_both, icosphere, needle, torus};
 use super::solid::Made::{Polygons, Triangles};
 use super::solid::Solid;
+use crate::random::Random;
 
 /// A kind of closed surface: its name, and how one is made.
 pub(super) type Kind = (&'static str, fn(&mut Random) -> Solid);
 
 /// Of triangles, of polygons, and of both.
-pub(super) const KINDS: [Kind; 17] = [
+pub(super) const KINDS: [Kind; 18] = [
     ("bumpy globe", |random| bumpy_globe(random).stretched(random)),
     ("icosphere", |random| icosphere().stretched(random)),
     ("torus", |random| torus().stretched(random)),
@@ -22,6 +22,7 @@ pub(super) const KINDS: [Kind; 17] = [
     ("L-prism", |random| l_prism(Polygons).stretched(random)),
     ("U-prism", |random| u_prism(Polygons).stretched(random)),
     ("star prism", |random| star_prism(random, Polygons, Polygons).stretched(random)),
+    ("column on a slab", |random| column_on_a_slab().stretched(random)),
     ("lattice, polygons", |_| lattice(12, |_| Polygons)),
     ("cube, both", |random| {
         let of_triangles = 1 + random.below(62);

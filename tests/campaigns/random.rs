@@ -32,6 +32,24 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
+    /// Their logarithms evenly.
+    pub(super) fn log_between(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    /// From low to high, both included.
+    pub(super) fn whole(&mut self, low: i64, high: i64) -> i64 {
+        low + self.below((high - low + 1) as usize) as i64
+    }
+
+    pub(super) fn one_in(&mut self, count: usize) -> bool {
+        self.below(count) == 0
+    }
+
+    pub(super) fn pick<'a, T>(&mut self, of: &'a [T]) -> &'a T {
+        &of[self.below(of.len())]
+    }
+
     /// Less than a count that is not 0.
     pub(super) fn below(&mut self, count: usize) -> usize {
         (u128::from(self.next()) * count as u128 >> 64) as usize
