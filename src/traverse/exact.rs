@@ -278,7 +278,8 @@ impl Line {
         }
     }
 
-    /// Both roots of the quadratic, the nearer first; see `kernel::sphere`.
+    /// Both roots of the quadratic, the nearer first; see `kernel::sphere`. That of smaller magnitude is taken from their
+    /// product, (|o − c|² − r²)/a, which keeps the digits that a difference would lose: of a start on the sphere it is 0.
     fn sphere(&self, center: DVec3, radius: f64) -> [Hit; 2] {
         let from_center = self.origin - center;
         let a = self.direction.length_squared();
@@ -287,7 +288,18 @@ impl Line {
         let half_squared = radius * radius - closest.length_squared();
         let half_t = if half_squared > 0.0 { (half_squared / a).sqrt() } else { 0.0 };
         let cosine = half_t * a.sqrt() / radius;
-        [closest_t - half_t, closest_t + half_t].map(|t| Hit { t, cosine })
+        let distance = from_center.length();
+        let product = (distance - radius) * (distance + radius) / a;
+        let roots = if half_t == 0.0 || closest_t == 0.0 {
+            [closest_t - half_t, closest_t + half_t]
+        } else if closest_t > 0.0 {
+            let larger = closest_t + half_t;
+            [product / larger, larger]
+        } else {
+            let larger = closest_t - half_t;
+            [larger, product / larger]
+        };
+        roots.map(|t| Hit { t, cosine })
     }
 
     /// Where the line meets the plane.

@@ -51,6 +51,10 @@ impl Sub for Twofold {
 impl Mul for Twofold {
     type Output = Self;
 
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "the error of a product, in a test; whatever fuses it, it is exact"
+    )]
     fn mul(self, other: Self) -> Self {
         let high = self.0 * other.0;
         let low = self.0.mul_add(other.0, -high);

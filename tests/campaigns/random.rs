@@ -52,7 +52,7 @@ impl Random {
 
     /// Less than a count that is not 0.
     pub(super) fn below(&mut self, count: usize) -> usize {
-        (u128::from(self.next()) * count as u128 >> 64) as usize
+        ((u128::from(self.next()) * count as u128) >> 64) as usize
     }
 
     pub(super) fn chance(&mut self, share: f64) -> bool {

@@ -58,7 +58,8 @@ fn passes_corner(numbers: &mut Numbers, share: f64) -> bool {
         // The ray leaves two axes' slabs where it enters the third's: outside of all of them by as much. Planes are rounded
         // towards the ray if they may be that far away, and away from it if they have to be.
         let (mut low, mut high) = ([-1.0_f32; 3], [1.0_f32; 3]);
-        let entered = (numbers.between(0.0, 3.0).floor() as usize).min(2);
+        let number = numbers.between(0.0, 3.0);
+        let entered = usize::from(number >= 1.0) + usize::from(number >= 2.0);
         let nearer = share < 16.0 * U;
         for axis in 0..3 {
             // Behind the plane that is met first, or that is met last, as the ray goes.

@@ -51,7 +51,7 @@ impl Setting {
             Body::Sphere { .. } => &[],
         });
         let faces: Vec<&Face> = faces.collect();
-        let (point, normal, to_edge) = place_on(*random.pick(&faces), at_edge, random);
+        let (point, normal, to_edge) = place_on(random.pick::<&Face>(&faces), at_edge, random);
         let center = grid.world(I64Vec3::ZERO);
         Self {
             name,

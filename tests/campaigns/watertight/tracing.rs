@@ -24,7 +24,7 @@ pub(super) struct Target<'a> {
 
 enum Ready<'a> {
     Wavefront(Box<Prepared<'a>>, Width),
-    Reference(Tracer<'a>),
+    Reference(Box<Tracer<'a>>),
 }
 
 /// What rays meet.
@@ -59,7 +59,7 @@ impl<'a> Target<'a> {
             Engine::Wavefront(width) => {
                 Ready::Wavefront(Box::new(Prepared::new(scene).expect("there are few primitives")), width)
             }
-            Engine::Reference => Ready::Reference(Tracer::new(scene, &STOP)),
+            Engine::Reference => Ready::Reference(Box::new(Tracer::new(scene, &STOP))),
         };
         Self { ready, pool }
     }

@@ -293,7 +293,7 @@ mod tests {
             let middle = Vec3::new(number(12.9), number(78.2), number(37.7));
             let corner = |corner: u16| {
                 let (sin, cos) = (f32::from(corner) * std::f32::consts::TAU / f32::from(count)).sin_cos();
-                let radius = if count == 10 && corner % 2 == 0 { 0.3 } else { 0.8 };
+                let radius = if count == 10 && corner.is_multiple_of(2) { 0.3 } else { 0.8 };
                 middle + radius * Vec3::new(cos, sin, 0.0)
             };
             let corners: Vec<Vec3> = (0..count).map(corner).collect();
