@@ -1,12 +1,13 @@
 //! A file that appears whole or not at all.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The temporary file that is being written, for [`discard_unfinished`].
-static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+/// The temporary files that the process is writing, for [`discard_unfinished`].
+static UNFINISHED: Unfinished = Unfinished(Mutex::new(BTreeSet::new()));
 
 /// Writes a file through a temporary one beside it, which takes its name only once all of it is on disk. A name that is
 /// a device or a pipe already is written to directly, since replacing it is never meant.
@@ -17,6 +18,15 @@ pub(crate) fn write(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> io::Result<()> {
+    write_noted(path, &UNFINISHED, write)
+}
+
+/// [`write()`], with the temporary file noted in `unfinished` for as long as there is one.
+fn write_noted(
+    path: &Path,
+    unfinished: &Unfinished,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
     if fs::metadata(path).is_ok_and(|meta| !meta.is_file() && !meta.is_dir()) {
         let mut writer = BufWriter::new(OpenOptions::new().write(true).open(path)?);
         write(&mut writer)?;
@@ -24,13 +34,14 @@ pub(crate) fn write(
     }
     let target = target(path)?;
     let (file, temporary_path) = temporary_file(&target)?.into_parts();
-    set_unfinished(Some(temporary_path.to_path_buf()));
+    let noted_path = temporary_path.to_path_buf();
+    unfinished.lock().insert(noted_path.clone());
     let mut writer = BufWriter::new(file);
     let written = write(&mut writer).and_then(|()| {
         writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
         temporary_path.persist(&target).map_err(|error| error.error)
     });
-    set_unfinished(None);
+    unfinished.lock().remove(&noted_path);
     written
 }
 
@@ -42,16 +53,24 @@ pub(crate) fn probe(path: &Path) -> io::Result<()> {
     temporary_file(&target(path)?).map(drop)
 }
 
-/// Removes the temporary file that another thread is writing, if one is; for a program that is about to end.
+/// Removes the temporary files that other threads are writing, if any are; for a program that is about to end.
 pub(crate) fn discard_unfinished() {
-    if let Some(path) = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        // There is nobody left to tell.
-        let _ = fs::remove_file(path);
-    }
+    UNFINISHED.discard();
 }
 
-fn set_unfinished(path: Option<PathBuf>) {
-    *UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner) = path;
+struct Unfinished(Mutex<BTreeSet<PathBuf>>);
+
+impl Unfinished {
+    fn lock(&self) -> MutexGuard<'_, BTreeSet<PathBuf>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn discard(&self) {
+        for path in std::mem::take(&mut *self.lock()) {
+            // There is nobody left to tell.
+            let _ = fs::remove_file(path);
+        }
+    }
 }
 
 /// The file to replace. Renaming onto a link would replace the link; what is meant is the file that it names, which need
@@ -128,9 +147,11 @@ mod tests {
     fn an_unfinished_file_can_be_discarded() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
-        let ended = super::write(&path, |_| {
+        // Not the list of the process: other tests are writing at the same time.
+        let unfinished = Unfinished(Mutex::default());
+        let ended = write_noted(&path, &unfinished, |_| {
             assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "the temporary file");
-            discard_unfinished();
+            unfinished.discard();
             assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
             Ok(())
         });
