@@ -191,25 +191,26 @@ impl Line {
                 let extent = center.abs().max_element() + radius;
                 self.sphere(center, radius)
                     .into_iter()
-                    .find_map(|hit| self.beyond_rounding(hit, extent, bend))
+                    .find_map(|hit| self.beyond_rounding(hit, LEAST_COSINE, extent, bend))
             }
             Shape::Triangle(vertices) => {
                 let extent = extent_of(vertices.into_iter());
-                let t = self.beyond_rounding(self.triangle(vertices), extent, bend)?;
+                let t = self.beyond_rounding(self.triangle(vertices), 0.0, extent, bend)?;
                 self.is_in(&vertices).then_some(t)
             }
             Shape::Polygon { normal, corners } => {
                 let extent = extent_of(corners.iter().copied());
-                let t = self.beyond_rounding(self.polygon(normal, &corners), extent, bend)?;
+                let t = self.beyond_rounding(self.polygon(normal, &corners), 0.0, extent, bend)?;
                 self.is_in(&corners).then_some(t)
             }
         }
     }
 
-    /// t of a hit that is farther from the start than the rounding of f64 in both, and than polygons are bent.
-    fn beyond_rounding(&self, hit: Hit, extent: f64, bend: f64) -> Option<f32> {
+    /// t of a hit that is farther from the start than the rounding of f64 in both, and than polygons are bent. A plane is as
+    /// far from the start at whatever angle the ray goes; a sphere bends away from its tangent, so its cosine is bounded.
+    fn beyond_rounding(&self, hit: Hit, least_cosine: f64, extent: f64, bend: f64) -> Option<f32> {
         let coordinates = extent + self.origin.abs().max_element();
-        let height = hit.t * hit.cosine.max(LEAST_COSINE) * self.direction.length();
+        let height = hit.t * hit.cosine.max(least_cosine) * self.direction.length();
         let t = rounded(hit.t);
         (height > TOUCHING * coordinates + bend && t > 0.0).then_some(t)
     }

@@ -25,6 +25,7 @@ mod generate;
 mod illuminate;
 mod level;
 mod optics;
+mod outline;
 mod queue;
 mod recorder;
 mod report;

@@ -5,6 +5,7 @@
 //! rounding left out it lies within 2⁻⁴⁷ of the coordinates of it. A normal is within 2⁻²⁴ of the true one for the f32 ray.
 
 use super::column::{Column, widen_vector};
+use super::outline;
 use super::queue::{
     DepartureQueue, HitQueue, NormalQueue, RadianceQueue, RadianceRecord, RayQueue, SurfaceQueue,
 };
@@ -301,12 +302,50 @@ fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitR
     let is_edge_on = slope.abs().lt(D::splat(1.0 / f64::from(1 << 20)) * direction.length());
     let t = D::select(is_edge_on, t, normal.dot(point - origin) / slope);
     let near = origin + direction * t;
-    let position = near - normal * (near - point).dot(normal);
+    let flat = near - normal * (near - point).dot(normal);
+    let position = match batch.departures {
+        None => on_faces(prepared, chunk, flat, normal),
+        // For rays that leave a surface f64 has decided where f32 could not tell.
+        Some(_) => flat,
+    };
     let shading_normal = prepared.plan.vertex_normals.then(|| {
         let mean = patch_normals(prepared, chunk, position, normal);
         on_side_of(normal, mean)
     });
     Found { direction, position, geometric_normal: normal, shading_normal }
+}
+
+/// Brings points that rounding has put beside their polygon back to its nearest edge, row by row. The kernel decides from
+/// rounded numbers that a ray from the eye meets the polygon, whose plane it may meet beyond the edge. A ray that goes inside a
+/// solid from there would enter it a second time, by the face behind the edge, and one that goes on inside a room would have
+/// left it.
+fn on_faces<D: Double>(
+    prepared: &Prepared<'_>,
+    chunk: &[HitRow],
+    position: Vector<D>,
+    normal: Vector<D>,
+) -> Vector<D> {
+    let [mut points, mut normals] = [[[0.0; 8]; 3]; 2];
+    for (columns, vector) in [(&mut points, position), (&mut normals, normal)] {
+        for (column, component) in columns.iter_mut().zip([vector.x, vector.y, vector.z]) {
+            component.store(column);
+        }
+    }
+    let geometry = &prepared.scene.geometry;
+    let scale = f64::from(prepared.scale.factor());
+    for (lane, row) in chunk.iter().enumerate() {
+        let run = geometry.polygons[row.index as usize].vertices.clone();
+        let corners = &geometry.vertices[run.start as usize..run.end as usize];
+        // In world space, where the corners are: the scale is a power of two.
+        let point = points.map(|column| column[lane] / scale);
+        if let Some(nearest) = outline::beside(corners, point, normals.map(|column| column[lane])) {
+            for (column, component) in points.iter_mut().zip(nearest) {
+                column[lane] = component * scale;
+            }
+        }
+    }
+    let [x, y, z] = points.map(|column| D::load(&column));
+    Vector::new(x, y, z)
 }
 
 /// Unit and on the side of n_g; n_g itself where the mean of the vertices' normals has no direction.

@@ -43,7 +43,6 @@ fn what_stands_alone_never_meets_itself() {
 }
 
 #[test]
-#[ignore = "not met: of 4.2 million rays 272 meet what they leave and 7 miss a wall, all at edges of polygons; docs/accuracy.md"]
 fn convex_solids_never_meet_themselves_from_outside_and_always_from_inside() {
     let setting = |random: &mut Random| {
         let eye = *random.pick(&[Eye::Outside, Eye::Outside, Eye::Inside]);
@@ -53,14 +52,12 @@ fn convex_solids_never_meet_themselves_from_outside_and_always_from_inside() {
 }
 
 #[test]
-#[ignore = "not met where rays start within 4 ulp of an edge of a room; docs/accuracy.md"]
 fn no_ray_leaves_a_room_by_its_edges() {
     let setting = |random: &mut Random| (solid(true, random), Eye::AtEdge);
     run(&Frames { name: "rooms", first_seed: 2 << 32, rays: share(4), setting: &setting });
 }
 
 #[test]
-#[ignore = "not met: of 4.4 million rays 963 meet what touches at their start; docs/accuracy.md"]
 fn what_touches_is_not_met_at_the_start_but_farther_on() {
     let setting = |random: &mut Random| {
         let eye = *random.pick(&[Eye::Outside, Eye::Outside, Eye::Outside, Eye::Inside]);
