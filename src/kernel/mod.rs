@@ -16,7 +16,7 @@ pub(crate) mod tests;
 pub(crate) mod textbook;
 pub(crate) mod triangle;
 
-pub(crate) use ray_space::{RaySpace, axes_from, unclear_area};
+pub(crate) use ray_space::{RaySpace, Seen, axes_along, axes_from, cross, crosses, unclear_area};
 
 /// Rounding of f32: half the distance from 1 to the next number.
 pub(crate) const UNIT_ROUNDOFF: f32 = 1.0 / (1 << 24) as f32;

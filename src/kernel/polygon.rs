@@ -16,8 +16,8 @@ use crate::lanes::{Lanes, Mask, Vector};
 pub(crate) struct Outline<L: Lanes> {
     /// Whether the edges so far cross the half-line from the ray's foot an odd number of times.
     pub(crate) odd: L::Mask,
-    /// Whether the foot is so near to one of the edges that rounding may have put it on the other side; false where that was
-    /// not asked.
+    /// Whether the foot is so near to one of the edges that rounding may have put it on the other side; of a ray that does not
+    /// leave a surface, whether the start may lie beside the polygon in its plane, with corners before it and behind.
     pub(crate) unclear: L::Mask,
     /// The smallest and the largest distance of a corner along the ray's third axis.
     pub(crate) least_z: L,
@@ -58,6 +58,13 @@ impl<L: Lanes> Outline<L> {
         let turn = cross(from, to);
         self.add_turn(from, to, turn, zero);
         self.unclear = self.unclear | (edges & turn.abs().le(unclear_area));
+    }
+
+    /// Whether some corner is no farther along the ray than t, and whether some corner is.
+    #[inline(always)]
+    pub(crate) fn sides_of(&self, t: L, t_per_z: L) -> (L::Mask, L::Mask) {
+        let (one, other) = (self.least_z * t_per_z, self.largest_z * t_per_z);
+        (one.min(other).le(t), one.max(other).gt(t))
     }
 
     #[inline(always)]

@@ -81,6 +81,19 @@ pub(crate) fn cross<L: Lanes>(a: &Seen<L>, b: &Seen<L>) -> L {
     a.x * b.y - a.y * b.x
 }
 
+/// The order of axes of a ray of this direction; of components that are equally large the first counts.
+#[inline(always)]
+pub(crate) fn axes_along(direction: [f32; 3]) -> [usize; 3] {
+    let sizes = direction.map(f32::abs);
+    axes_from(if sizes[0] >= sizes[1] && sizes[0] >= sizes[2] {
+        0
+    } else if sizes[1] >= sizes[2] {
+        1
+    } else {
+        2
+    })
+}
+
 /// The ray's order of axes: cyclic, the third being that of the largest component of the direction.
 #[inline(always)]
 pub(crate) fn axes_from(third: usize) -> [usize; 3] {

@@ -8,8 +8,6 @@ use crate::lanes::{Lanes, Mask};
 pub(crate) struct Meeting<L: Lanes> {
     /// Of what falls on an edge, one of the two triangles there holds it.
     pub(crate) inside: L::Mask,
-    /// Some area that the foot spans with an edge is 0.
-    tied: L::Mask,
     /// The least and the largest of the areas that the ray's foot spans with the edges.
     least: L,
     largest: L,
@@ -43,7 +41,7 @@ pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) 
         let odd = crosses(&b, &c, u, zero).xor(crosses(&c, &a, v, zero)).xor(crosses(&a, &b, w, zero));
         inside = inside | (tied & odd);
     }
-    Meeting { inside, tied, least, largest, volume, seen_double_area: area, corners: [a, b, c] }
+    Meeting { inside, least, largest, volume, seen_double_area: area, corners: [a, b, c] }
 }
 
 impl<L: Lanes> Meeting<L> {
@@ -83,16 +81,12 @@ impl<L: Lanes> Meeting<L> {
         (self.seen_double_area.abs() - rounding).max(zero)
     }
 
-    /// Divides: for those that are inside.
+    /// Divides: for those that are inside. No point of the triangle is before its nearest corner or beyond its farthest; of one
+    /// that is seen edge-on the areas may be nothing but rounding, with a mean anywhere, or none.
     #[inline(always)]
     pub(crate) fn t(&self, ray: &RaySpace<L>) -> L {
         let t = self.volume * ray.t_per_z / self.seen_double_area;
-        if !self.tied.any() {
-            return t;
-        }
-        // Areas that rounding has given different signs, of a triangle that is seen edge-on, have a mean anywhere, or none.
         let [a, b, c] = self.corners.each_ref().map(|corner| corner.z * ray.t_per_z);
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        L::select(self.tied, t.max(low).min(high), t)
+        t.max(a.min(b).min(c)).min(a.max(b).max(c))
     }
 }

@@ -22,6 +22,7 @@
 mod camera;
 mod certainty;
 mod hierarchy;
+mod in_plane;
 #[cfg(test)]
 mod judged;
 mod optics;

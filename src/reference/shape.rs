@@ -1,5 +1,6 @@
 //! Where a ray meets a sphere, a triangle or a polygon, and what the surface is like there.
 
+use super::in_plane::{self, Part};
 use super::ray::{Departure, Ray};
 use crate::scene::{Geometry, Material, MaterialId, PrimitiveId};
 use glam::DVec3;
@@ -234,7 +235,7 @@ pub(super) struct TriangleHit {
 /// Seen along the ray, the signed areas that its foot spans with the edges are the barycentric weights, and t is the mean of
 /// the vertices' t by these weights. Inside is what is inside of a polygon: see [`crosses`].
 pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
-    let seen @ [a, b, c] = vertices.map(|vertex| ray.project(vertex));
+    let [a, b, c] = vertices.map(|vertex| ray.project(vertex));
     let inside =
         [(a, b), (b, c), (c, a)].into_iter().filter(|&(from, to)| crosses(from, to)).count() % 2 == 1;
     let weights = [cross(b, c), cross(c, a), cross(a, b)];
@@ -244,9 +245,8 @@ pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> 
     }
     let barycentric = weights.map(|weight| weight / area);
     let t = barycentric[0] * a.z + barycentric[1] * b.z + barycentric[2] * c.z;
-    // Seen nearly edge-on, areas may be nothing but rounding; a point of the triangle is no nearer than its nearest vertex.
-    let (low, high) = seen.iter().fold((a.z, a.z), |(low, high), seen| (low.min(seen.z), high.max(seen.z)));
-    Some(TriangleHit { t: t.clamp(low, high), barycentric })
+    // Seen nearly edge-on, areas may be nothing but rounding.
+    Some(TriangleHit { t: kept_within_bounds(ray, vertices, t), barycentric })
 }
 
 /// Crossing-number test (Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994) of where the ray meets the
@@ -265,21 +265,49 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
         (low_t, high_t) = (low_t.min(to.z), high_t.max(to.z));
         from = to;
     }
-    if !inside {
+    // A ray that leaves a surface does not meet what its start touches, by a rule of its own.
+    let has_both_sides = low_t <= ray.t_min && ray.t_min < high_t && ray.departure.is_none();
+    if !inside && !has_both_sides {
         return None;
     }
     let slope = normal.dot(ray.direction);
-    if slope == 0.0 {
-        return None; // seen edge-on
+    // A plane seen nearly edge-on is met anywhere.
+    let t = kept_within_bounds(ray, vertices, normal.dot(vertices[0] - ray.origin) / slope);
+    if has_both_sides && starts_in_plane(ray, vertices, normal) {
+        match in_plane::part_beyond(ray, vertices) {
+            Part::StartsOn => {}
+            Part::Met(_) if t > ray.t_min => return Some(t),
+            Part::Met(edge_t) if edge_t > ray.t_min => return Some(edge_t),
+            Part::Met(_) => return Some(ray.t_min.next_up()),
+            Part::Passed => return None,
+        }
     }
-    let t = normal.dot(vertices[0] - ray.origin) / slope;
-    // A plane seen nearly edge-on is met anywhere; a point of the polygon is no nearer than its nearest vertex.
-    Some(t.clamp(low_t, high_t))
+    // Edge-on it is not met.
+    (inside && slope != 0.0).then_some(t)
+}
+
+/// No point of a face is before its box, or beyond: else what is met first would turn on what is looked at first.
+fn kept_within_bounds(ray: &Ray, vertices: &[DVec3], t: f64) -> f64 {
+    let (low, high) = bounds_of(vertices);
+    let [one, other] = [low, high].map(|corner| (corner - ray.origin) / ray.direction);
+    // An axis along which the ray does not go has no say.
+    let goes_along = |axis: &usize| ray.direction[*axis] != 0.0;
+    let enter = (0..3).filter(goes_along).map(|axis| one[axis].min(other[axis])).fold(t, f64::max);
+    (0..3).filter(goes_along).map(|axis| one[axis].max(other[axis])).fold(enter, f64::min)
+}
+
+/// Whether a ray starts no farther from the plane than the polygon is bent, and than coordinates are rounded.
+fn starts_in_plane(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> bool {
+    let start = ray.at(ray.t_min);
+    let height = |point: DVec3| normal.dot(point - vertices[0]).abs();
+    let bend = vertices.iter().map(|&vertex| height(vertex)).fold(0.0, f64::max);
+    let extent = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(0.0, f64::max);
+    height(start) <= bend + Meeting::ROUNDING * (extent + start.abs().max_element())
 }
 
 /// Whether an edge crosses the half-line from the ray's foot along x. Half open: a vertex level with the foot counts as above
 /// it, and an edge through it as left of it, for every face alike; so of two faces at an edge one holds what falls on it.
-fn crosses(from: DVec3, to: DVec3) -> bool {
+pub(super) fn crosses(from: DVec3, to: DVec3) -> bool {
     // From the lower to the upper end, so that both faces at an edge compute the same.
     let (lower, upper) = if from.y < 0.0 { (from, to) } else { (to, from) };
     lower.y < 0.0 && upper.y >= 0.0 && cross(lower, upper) > 0.0
@@ -287,7 +315,7 @@ fn crosses(from: DVec3, to: DVec3) -> bool {
 
 /// Twice the signed area of the triangle (foot of the ray, a, b). The two products are rounded before they are
 /// subtracted, so the sign is right or the result is 0, and swapping a and b only changes the sign.
-fn cross(a: DVec3, b: DVec3) -> f64 {
+pub(super) fn cross(a: DVec3, b: DVec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 

@@ -124,15 +124,18 @@ pub(super) fn polygon<F: Single, const DEPARTING: bool>(
     let zero = F::splat(0.0);
     let corner_ts = [outline.least_z * view.space.t_per_z, outline.largest_z * view.space.t_per_z];
     let meeting = polygon::meet_plane(&view.line, plane, corner_ts, zero);
-    let (may_be_inside, inside) = (outline.odd | outline.unclear, outline.odd & !outline.unclear);
     let touches = !meeting.height.abs().gt(slack);
-    let hit = inside & !touches & meeting.meets & meeting.t.gt(start.t_min);
-    let unclear = may_be_inside & (touches | !inside);
+    let is_beyond = meeting.meets & meeting.t.gt(start.t_min);
     // Of the slope too, some roundings are not to be relied on.
     let slope = (meeting.slope.abs() - F::splat(8.0 * UNIT_ROUNDOFF) * view.line.a).max(zero);
     let error = view.padding / slope;
     if DEPARTING {
-        return Candidate { t: meeting.t, error, hit: hit & !start.own, unclear: unclear & !start.own };
+        let hit = outline.odd & !outline.unclear & !touches & is_beyond & !start.own;
+        let unclear = (outline.unclear | (outline.odd & touches)) & !start.own;
+        return Candidate { t: meeting.t, error, hit, unclear };
     }
-    Candidate { t: meeting.t, error, hit, unclear }
+    // Of a start in the plane it is not said that the foot is inside if the ray meets the polygon: of a concave one it may see
+    // two parts, one before it and one behind.
+    let unclear = (outline.odd | outline.unclear) & touches;
+    Candidate { t: meeting.t, error, hit: outline.odd & !touches & is_beyond, unclear }
 }

@@ -6,6 +6,7 @@
 //! primitives are visited. Of surfaces that coincide each rounds its own t: those that agree to 32 bits are at one t, and
 //! the smallest id is seen.
 
+use super::in_plane::{Outline, Part};
 use crate::kernel::UNIT_ROUNDOFF;
 use crate::prepare::{BLOCK, Hierarchy};
 use glam::DVec3;
@@ -166,18 +167,28 @@ impl Line {
         Self { origin: origin + origin_low, direction, departure }
     }
 
-    /// Where a ray meets a surface beyond `t_min`, next to which it starts; that the ray passes inside of the surface's edges is
-    /// known. Faces that share an edge have decided that alike, and here they do not decide it anew.
+    /// Where a ray meets a surface beyond `t_min`, next to which it starts. Whether the ray passes inside of a face's edges is
+    /// asked as the kernels ask it: faces that share an edge decide that alike.
     #[cold]
     pub(super) fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot, t_min: f32) -> Option<f32> {
         let beyond = |hit: Hit| {
             let t = rounded(hit.t);
             (hit.t > f64::from(t_min) && t > t_min).then_some(t)
         };
-        match spot.shape(hierarchy) {
-            Shape::Sphere { center, radius, .. } => self.sphere(center, radius).into_iter().find_map(beyond),
-            Shape::Triangle(vertices) => beyond(self.triangle(vertices)),
-            Shape::Polygon { normal, corners } => beyond(self.polygon(normal, &corners)),
+        let (hit, corners) = match spot.shape(hierarchy) {
+            Shape::Sphere { center, radius, .. } => {
+                return self.sphere(center, radius).into_iter().find_map(beyond);
+            }
+            Shape::Triangle(vertices) => (self.triangle(vertices), vertices.to_vec()),
+            Shape::Polygon { normal, corners } => (self.polygon(normal, &corners), corners),
+        };
+        let outline = Outline::new(self.origin, self.direction, &corners);
+        match outline.part_beyond(f64::from(t_min)) {
+            Part::StartsOn if outline.is_foot_inside() => beyond(hit),
+            Part::StartsOn | Part::Passed => None,
+            Part::Met(edge_t) => {
+                beyond(hit).or_else(|| beyond(Hit { t: edge_t, ..hit })).or(Some(t_min.next_up()))
+            }
         }
     }
 

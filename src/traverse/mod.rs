@@ -2,6 +2,7 @@
 //!
 //! - `candidate`: what counts as a hit of a primitive, for one pair of ray and primitive in each lane
 //! - `exact`: which of two hits is the nearer, where f32 cannot tell
+//! - `in_plane`: faces whose plane a ray starts in, for `exact`
 //! - `single`: one ray at a time, its lanes across the children of a node and the primitives of a block
 //! - `packet`: 64 rays at a time, their lanes across rays
 //!
@@ -12,6 +13,7 @@ mod candidate;
 mod coherence;
 mod counts;
 mod exact;
+mod in_plane;
 mod packet;
 mod single;
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::{Counts, DEAD, Rays};
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
-use crate::kernel::{RaySpace, axes_from, unclear_area};
+use crate::kernel::{RaySpace, axes_along, unclear_area};
 use crate::lanes::{Lanes, Mask, Single, Vector};
 use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{BLOCK, Hierarchy, Place};
@@ -39,14 +39,8 @@ impl Ray {
         let origin = rays.origin.map(|column| column[row]);
         let direction = rays.direction.map(|column| column[row]);
         let sizes = direction.map(f32::abs);
-        let third = if sizes[0] >= sizes[1] && sizes[0] >= sizes[2] {
-            0
-        } else if sizes[1] >= sizes[2] {
-            1
-        } else {
-            2
-        };
-        let axes = axes_from(third);
+        let axes = axes_along(direction);
+        let third = axes[2];
         let backwards = direction.map(|component| component < 0.0);
         let t_per_z = 1.0 / direction[third];
         let least = sizes[third] * LEAST_COMPONENT;
@@ -367,7 +361,12 @@ impl Target<'_> {
             counts.polygons.add(F::WIDTH, in_use);
         }
         let odd = !outline.odd.bits().count_ones().is_multiple_of(2);
-        let unclear = outline.unclear.any();
+        let unclear = if DEPARTING {
+            outline.unclear.any()
+        } else {
+            let (before, beyond) = outline.sides_of(F::splat(ray.t_min), F::splat(ray.t_per_z));
+            before.any() && beyond.any()
+        };
         if !(odd | unclear) {
             return;
         }

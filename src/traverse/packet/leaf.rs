@@ -168,6 +168,10 @@ impl Packet {
         counts.polygons.calls += u64::from(face.edges);
         counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
         counts.polygons.used += u64::from(face.edges) * used as u64;
+        if !DEPARTING {
+            let (before, beyond) = outline.sides_of(F::load(&self.t_min[row..]), space.t_per_z);
+            outline.unclear = before & beyond;
+        }
         if !((outline.odd | outline.unclear) & mask).any() {
             return;
         }

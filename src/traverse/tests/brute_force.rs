@@ -115,6 +115,10 @@ impl Query {
                                 outline.add_edge(&from, &to, 0.0);
                             }
                         }
+                        if !DEPARTING {
+                            let (before, beyond) = outline.sides_of(self.t_min, space.t_per_z);
+                            outline.unclear = before & beyond;
+                        }
                         let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
                         let view = View { space, line, padding };
                         let (slack, start) = (face.slack, start(face.id));

@@ -58,7 +58,6 @@ struct Campaign {
 type Tallies = [Tally; 2];
 
 #[test]
-#[ignore = "not met by rays that start within the plane of a face; by all others it is; docs/accuracy.md"]
 fn no_ray_gets_out_of_a_closed_surface() {
     let campaign = Campaign::new(crate::ray_budget(10_000_000));
     let [wavefront, reference] = campaign.run();

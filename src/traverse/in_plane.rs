@@ -1,0 +1,135 @@
+//! Faces whose plane a ray starts in.
+//!
+//! A ray that starts beside a face, within its plane or nearly so, and goes along the plane sees the face edge-on: where it
+//! meets the plane is nothing but rounding, and a concave face may lie both before the start and behind it. What tells is the
+//! part of the face that lies before: its outline, closed by the line along which the start's own cross-section cuts it. The
+//! start is not on that line, or it would be on the face.
+
+use crate::kernel::{RaySpace, Seen, axes_along, cross, crosses};
+use glam::{DVec2, DVec3};
+
+/// A face as seen along a ray.
+pub(super) struct Outline {
+    corners: Vec<Corner>,
+}
+
+/// What the kernels see, and the same in f64 with t for the third coordinate.
+struct Corner {
+    seen: Seen<f32>,
+    at: DVec3,
+}
+
+/// What a ray meets of a face that has corners on both sides of `t_min`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    /// The start is on the face, or as near as rounding can tell.
+    StartsOn,
+    /// About where the edges there have this t: better known only where the ray meets the plane beyond `t_min`.
+    Met(f64),
+    Passed,
+}
+
+impl Outline {
+    /// The ray is one of f32.
+    pub(super) fn new(origin: DVec3, direction: DVec3, corners: &[DVec3]) -> Self {
+        let [origin_f32, direction_f32] = [origin, direction].map(|vector| vector.as_vec3().to_array());
+        let axes @ [x, y, z] = axes_along(direction_f32);
+        let t_per_z = 1.0 / direction_f32[z];
+        let space = RaySpace {
+            origin: axes.map(|axis| origin_f32[axis]),
+            origin_low: None,
+            shear: [direction_f32[x] * t_per_z, direction_f32[y] * t_per_z],
+            t_per_z,
+        };
+        let see = |&corner: &DVec3| {
+            let from_origin = corner - origin;
+            let t = from_origin[z] / direction[z];
+            let at = from_origin - direction * t;
+            let corner = corner.as_vec3();
+            Corner { seen: space.see(axes.map(|axis| corner[axis])), at: DVec3::new(at[x], at[y], t) }
+        };
+        Self { corners: corners.iter().map(see).collect() }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = (&Corner, &Corner)> {
+        self.corners.iter().zip(self.corners.iter().cycle().skip(1))
+    }
+
+    /// Whether the ray's foot is inside, as the kernels decide it.
+    pub(super) fn is_foot_inside(&self) -> bool {
+        self.edges().filter(|(from, to)| is_crossed(from, to)).count() % 2 == 1
+    }
+
+    /// What lies beyond `t_min` of a face in whose plane the ray starts.
+    ///
+    /// The edges there are asked just what the kernels ask of them, and every point is above the foot or below it for both lines
+    /// that end there. So however points are rounded, the lines are closed, and no ray slips between a face that is cut so and
+    /// its neighbour.
+    pub(super) fn part_beyond(&self, t_min: f64) -> Part {
+        let mut is_in = false;
+        // Distance from the foot, and t.
+        let mut nearest = (f64::INFINITY, t_min);
+        // Where the outline passes t_min, and whether that is below the foot.
+        let mut cuts: Vec<(DVec2, bool)> = Vec::new();
+        for (from, to) in self.edges() {
+            let is_below = [from, to].map(|end| end.seen.y < 0.0);
+            let is_beyond = [from, to].map(|end| end.at.z > t_min);
+            let mut changes_side = is_below[0] != is_below[1];
+            if is_beyond[0] != is_beyond[1] {
+                let cut = from.at.lerp(to.at, (from.at.z - t_min) / (from.at.z - to.at.z));
+                let is_cut_below = if changes_side { cut.y < 0.0 } else { is_below[0] };
+                changes_side = is_cut_below != is_below[usize::from(is_beyond[1])];
+                cuts.push((cut.truncate(), is_cut_below));
+            } else {
+                changes_side &= is_beyond[0];
+            }
+            if changes_side {
+                is_in ^= is_crossed(from, to);
+                let at = level_with_foot(from.at, to.at);
+                if at.x.abs() < nearest.0 {
+                    nearest = (at.x.abs(), at.z);
+                }
+            }
+        }
+        match is_in_by_cuts(cuts) {
+            None => Part::StartsOn,
+            Some(is_in_by_cuts) if is_in_by_cuts == is_in => Part::Passed,
+            Some(_) => Part::Met(nearest.1),
+        }
+    }
+}
+
+fn is_crossed(from: &Corner, to: &Corner) -> bool {
+    crosses(&from.seen, &to.seen, cross(&from.seen, &to.seen), 0.0)
+}
+
+/// Whether the lines between cuts cross the half-line from the foot along x an odd number of times; none if the foot is on
+/// one of them.
+fn is_in_by_cuts(mut cuts: Vec<(DVec2, bool)>) -> Option<bool> {
+    let (low, high) = cuts
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &(cut, _)| (low.min(cut), high.max(cut)));
+    // They are on a line. Along it, inside is between the first and the second, the third and the fourth.
+    let axis = usize::from((high - low).y > (high - low).x);
+    cuts.sort_by(|one, other| one.0[axis].total_cmp(&other.0[axis]));
+    let mut is_in = false;
+    for pair in cuts.chunks_exact(2) {
+        let [(one, is_one_below), (other, is_other_below)] = [pair[0], pair[1]];
+        if one[axis] <= 0.0 && other[axis] >= 0.0 {
+            return None;
+        }
+        if is_one_below != is_other_below {
+            let (lower, upper) = if is_one_below { (one, other) } else { (other, one) };
+            is_in ^= lower.perp_dot(upper) > 0.0;
+        }
+    }
+    Some(is_in)
+}
+
+/// The point of an edge that is level with the foot; f32 has found that there is one.
+fn level_with_foot(from: DVec3, to: DVec3) -> DVec3 {
+    let share = from.y / (from.y - to.y);
+    // Where f64 finds none it is outside of these, or no number.
+    let share = if share > 0.0 { if share < 1.0 { share } else { 1.0 } } else { 0.0 };
+    from.lerp(to, share)
+}
