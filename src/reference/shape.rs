@@ -170,6 +170,18 @@ impl Primitive {
         }
     }
 
+    /// t, moved to where the ray is within the bounds of this primitive. Seen nearly edge-on, the plane of a polygon that
+    /// rounding has bent is met where nothing of the polygon is; to which hit is nearer it is where its bounds are, or else that would
+    /// turn on which is looked at first.
+    pub(super) fn within_bounds(&self, ray: &Ray, t: f64) -> f64 {
+        let (low, high) = self.bounds();
+        let [one, other] = [low, high].map(|corner| (corner - ray.origin) / ray.direction);
+        // An axis along which the ray does not go has no say.
+        let goes_along = |axis: &usize| ray.direction[*axis] != 0.0;
+        let leave = (0..3).filter(goes_along).map(|axis| one[axis].max(other[axis])).fold(t, f64::min);
+        (0..3).filter(goes_along).map(|axis| one[axis].min(other[axis])).fold(leave, f64::max)
+    }
+
     /// Smallest and largest coordinates; rounded outward where they are computed.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
         match &self.shape {
@@ -235,7 +247,7 @@ pub(super) struct TriangleHit {
 /// Seen along the ray, the signed areas that its foot spans with the edges are the barycentric weights, and t is the mean of
 /// the vertices' t by these weights. Inside is what is inside of a polygon: see [`crosses`].
 pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
-    let [a, b, c] = vertices.map(|vertex| ray.project(vertex));
+    let seen @ [a, b, c] = vertices.map(|vertex| ray.project(vertex));
     let inside =
         [(a, b), (b, c), (c, a)].into_iter().filter(|&(from, to)| crosses(from, to)).count() % 2 == 1;
     let weights = [cross(b, c), cross(c, a), cross(a, b)];
@@ -245,8 +257,9 @@ pub(super) fn triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> 
     }
     let barycentric = weights.map(|weight| weight / area);
     let t = barycentric[0] * a.z + barycentric[1] * b.z + barycentric[2] * c.z;
-    // Seen nearly edge-on, areas may be nothing but rounding.
-    Some(TriangleHit { t: kept_within_bounds(ray, vertices, t), barycentric })
+    // Seen nearly edge-on, areas may be nothing but rounding; a point of the triangle is no nearer than its nearest vertex.
+    let (low, high) = seen.iter().fold((a.z, a.z), |(low, high), seen| (low.min(seen.z), high.max(seen.z)));
+    Some(TriangleHit { t: t.clamp(low, high), barycentric })
 }
 
 /// Crossing-number test (Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994) of where the ray meets the
@@ -271,8 +284,8 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
         return None;
     }
     let slope = normal.dot(ray.direction);
-    // A plane seen nearly edge-on is met anywhere.
-    let t = kept_within_bounds(ray, vertices, normal.dot(vertices[0] - ray.origin) / slope);
+    // A plane seen nearly edge-on is met anywhere; a point of the polygon is no nearer than its nearest vertex.
+    let t = (normal.dot(vertices[0] - ray.origin) / slope).clamp(low_t, high_t);
     if has_both_sides && starts_in_plane(ray, vertices, normal) {
         match in_plane::part_beyond(ray, vertices) {
             Part::StartsOn => {}
@@ -284,16 +297,6 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
     }
     // Edge-on it is not met.
     (inside && slope != 0.0).then_some(t)
-}
-
-/// No point of a face is before its box, or beyond: else what is met first would turn on what is looked at first.
-fn kept_within_bounds(ray: &Ray, vertices: &[DVec3], t: f64) -> f64 {
-    let (low, high) = bounds_of(vertices);
-    let [one, other] = [low, high].map(|corner| (corner - ray.origin) / ray.direction);
-    // An axis along which the ray does not go has no say.
-    let goes_along = |axis: &usize| ray.direction[*axis] != 0.0;
-    let enter = (0..3).filter(goes_along).map(|axis| one[axis].min(other[axis])).fold(t, f64::max);
-    (0..3).filter(goes_along).map(|axis| one[axis].max(other[axis])).fold(enter, f64::min)
 }
 
 /// Whether a ray starts no farther from the plane than the polygon is bent, and than coordinates are rounded.

@@ -142,6 +142,8 @@ pub(super) struct Line {
     origin: DVec3,
     direction: DVec3,
     departure: u32,
+    /// Hits are wanted beyond this.
+    t_min: f32,
 }
 
 /// A hit in f64.
@@ -161,19 +163,19 @@ const TOUCHING: f64 = 1.0 / (1_u64 << 45) as f64;
 
 impl Line {
     /// `origin_low` is what the origin's rounding to f32 left out.
-    pub(super) fn new(origin: [f32; 3], origin_low: [f32; 3], direction: [f32; 3], departure: u32) -> Self {
+    pub(super) fn new([origin, origin_low, direction]: [[f32; 3]; 3], departure: u32, t_min: f32) -> Self {
         let [origin, origin_low, direction] =
             [origin, origin_low, direction].map(|vector| DVec3::from(vector.map(f64::from)));
-        Self { origin: origin + origin_low, direction, departure }
+        Self { origin: origin + origin_low, direction, departure, t_min }
     }
 
-    /// Where a ray meets a surface beyond `t_min`, next to which it starts. Whether the ray passes inside of a face's edges is
+    /// Where a ray meets a surface beyond `t_min`, next to which it starts there. Whether the ray passes inside of a face's edges is
     /// asked as the kernels ask it: faces that share an edge decide that alike.
     #[cold]
-    pub(super) fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot, t_min: f32) -> Option<f32> {
+    pub(super) fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         let beyond = |hit: Hit| {
             let t = rounded(hit.t);
-            (hit.t > f64::from(t_min) && t > t_min).then_some(t)
+            (hit.t > f64::from(self.t_min) && t > self.t_min).then_some(t)
         };
         let (hit, corners) = match spot.shape(hierarchy) {
             Shape::Sphere { center, radius, .. } => {
@@ -183,11 +185,11 @@ impl Line {
             Shape::Polygon { normal, corners } => (self.polygon(normal, &corners), corners),
         };
         let outline = Outline::new(self.origin, self.direction, &corners);
-        match outline.part_beyond(f64::from(t_min)) {
+        match outline.part_beyond(f64::from(self.t_min)) {
             Part::StartsOn if outline.is_foot_inside() => beyond(hit),
             Part::StartsOn | Part::Passed => None,
             Part::Met(edge_t) => {
-                beyond(hit).or_else(|| beyond(Hit { t: edge_t, ..hit })).or(Some(t_min.next_up()))
+                beyond(hit).or_else(|| beyond(Hit { t: edge_t, ..hit })).or(Some(self.t_min.next_up()))
             }
         }
     }
@@ -285,9 +287,14 @@ impl Line {
                 }
                 if (near.t - t).abs() <= (far.t - t).abs() { near } else { far }
             }
-            Shape::Triangle(vertices) => self.triangle(vertices),
-            Shape::Polygon { normal, corners } => self.polygon(normal, &corners),
+            Shape::Triangle(vertices) => self.kept_beyond(self.triangle(vertices), t),
+            Shape::Polygon { normal, corners } => self.kept_beyond(self.polygon(normal, &corners), t),
         }
+    }
+
+    /// The t that was found for a face whose plane, by rounding, seems to be met before where hits are wanted: see [`Part::Met`].
+    fn kept_beyond(&self, hit: Hit, t: f64) -> Hit {
+        if hit.t <= f64::from(self.t_min) { Hit { t, ..hit } } else { hit }
     }
 
     /// Both roots of the quadratic, the nearer first; see `kernel::sphere`. That of smaller magnitude is taken from their

@@ -103,7 +103,7 @@ impl Ray {
     }
 
     fn exact(&self) -> exact::Line {
-        exact::Line::new(self.origin, self.origin_low, self.direction, self.departure)
+        exact::Line::new([self.origin, self.origin_low, self.direction], self.departure, self.t_min)
     }
 
     /// Whether the ray starts on primitives of these ids, and then which way it goes.
@@ -153,7 +153,7 @@ impl Target<'_> {
             let found = if DEPARTING {
                 line.departs_to(self.hierarchy, spot)
             } else {
-                line.meets_beyond(self.hierarchy, spot, self.ray.t_min)
+                line.meets_beyond(self.hierarchy, spot)
             };
             if let Some(t) = found {
                 self.offer::<ANY>(t, t * exact::ROUNDED, spot);

@@ -91,6 +91,11 @@ fn assert_same(found: FaceMeeting, expected: FaceMeeting, change: Change) -> Res
     Ok(())
 }
 
+fn is_fastest_along_two_axes(line: &Line) -> bool {
+    let size = line.direction.abs();
+    size.to_array().into_iter().filter(|&component| component == size.max_element()).count() > 1
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
@@ -102,6 +107,9 @@ proptest! {
 
     #[test]
     fn polygons_are_seen_alike_at_every_scale_from_every_side((line, corners) in at_polygon(), change in change()) {
+        // What keeps t of a bent polygon between its corners is where these are along the axis in which the line is fastest, of two
+        // axes the first: the other one once they have changed places.
+        prop_assume!(!is_fastest_along_two_axes(&line));
         let changed: Vec<Vec3> = corners.iter().map(|&corner| change.of_corner(corner)).collect();
         assert_same(polygon(&change.of_line(line), &changed), polygon(&line, &corners), change)?;
     }

@@ -235,9 +235,9 @@ impl Packet {
     }
 
     fn exact(&self, row: usize) -> exact::Line {
-        let [origin, origin_low, direction] = [&self.origin, &self.origin_low, &self.direction]
+        let vectors = [&self.origin, &self.origin_low, &self.direction]
             .map(|columns| columns.each_ref().map(|column| column[row]));
-        exact::Line::new(origin, origin_low, direction, self.departure[row])
+        exact::Line::new(vectors, self.departure[row], self.t_min[row])
     }
 
     /// Takes in what a ray meets of a primitive for which f32 cannot tell.
@@ -252,11 +252,8 @@ impl Packet {
             return;
         }
         let line = self.exact(row);
-        let found = if DEPARTING {
-            line.departs_to(hierarchy, spot)
-        } else {
-            line.meets_beyond(hierarchy, spot, self.t_min[row])
-        };
+        let found =
+            if DEPARTING { line.departs_to(hierarchy, spot) } else { line.meets_beyond(hierarchy, spot) };
         let Some(t) = found else { return };
         let error = t * exact::ROUNDED;
         if !self.decide::<ANY>(hierarchy, row, (t, error, spot)) {

@@ -35,7 +35,8 @@ impl Query {
     }
 
     fn exact(&self) -> exact::Line {
-        exact::Line::new(self.sight.origin, self.origin_low, self.sight.direction, self.departure)
+        let vectors = [self.sight.origin, self.origin_low, self.sight.direction];
+        exact::Line::new(vectors, self.departure, self.t_min)
     }
 
     /// Every hit at `t_min` < t: t as the kernel has it, how far it may be off, and where.
@@ -60,7 +61,7 @@ impl Query {
                 let found = if DEPARTING {
                     self.exact().departs_to(hierarchy, spot)
                 } else {
-                    self.exact().meets_beyond(hierarchy, spot, self.t_min)
+                    self.exact().meets_beyond(hierarchy, spot)
                 };
                 hits.extend(found.map(|t| (t, t * exact::ROUNDED, spot)));
             } else if candidate.hit {
