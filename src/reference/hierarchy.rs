@@ -74,12 +74,11 @@ impl Hierarchy {
         let scale = (self.extent + ray.origin.abs().max_element()) / ray.direction.abs().max_element();
         let slack = 2.0 * ROUNDING * scale / Meeting::LEAST_COSINE;
         let mut nearest: Option<Meeting> = None;
-        let mut candidates: Vec<(Meeting, Hit<'_>)> = Vec::new();
+        let mut candidates: Vec<(Meeting, &Primitive)> = Vec::new();
         self.visit(ray, self.padding(ray), f64::INFINITY, |primitive| {
             let Some(meeting) = primitive.intersect(ray) else {
                 return nearest.map_or(f64::INFINITY, |nearest| nearest.t + slack);
             };
-            let hit = Hit { t: meeting.t, primitive };
             let meeting = Meeting { t: primitive.within_bounds(ray, meeting.t), ..meeting };
             let nearest = match nearest {
                 Some(nearest) if nearest.t <= meeting.t => nearest,
@@ -89,11 +88,12 @@ impl Hierarchy {
                 }
             };
             if are_equal(&meeting, &nearest) {
-                candidates.push((meeting, hit));
+                candidates.push((meeting, primitive));
             }
             nearest.t + slack
         });
-        candidates.into_iter().map(|(_, hit)| hit).min_by_key(|hit| hit.primitive.id)
+        let first = candidates.into_iter().min_by_key(|(_, primitive)| primitive.id);
+        first.map(|(meeting, primitive)| Hit { t: meeting.t, primitive })
     }
 
     /// Whether something that casts a shadow lies at 0 < t < `end`, apart from surfaces that the end is on, if it may be

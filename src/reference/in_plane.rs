@@ -1,4 +1,7 @@
-//! Faces whose plane a ray starts in.
+//! Faces that a ray sees edge-on.
+//!
+//! A plane seen edge-on is met anywhere, but a face in it is where its edges next to the ray's foot are: see
+//! [`kept_between_edges`].
 //!
 //! A ray that starts beside a face, within its plane or nearly so, and goes along the plane sees the face edge-on: where it
 //! meets the plane is nothing but rounding, and a concave face may lie both before the start and behind it. What tells is the
@@ -45,7 +48,7 @@ pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3]) -> Part {
         }
         if changes_side {
             is_in ^= crosses(from, to);
-            let at = from.lerp(to, from.y / (from.y - to.y));
+            let at = level_with_foot(from, to);
             if at.x.abs() < nearest.0 {
                 nearest = (at.x.abs(), at.z);
             }
@@ -73,4 +76,29 @@ pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3]) -> Part {
         return Part::Passed;
     }
     Part::Met(nearest.1)
+}
+
+/// t, moved to between the nearest edges that the line through the ray's foot along x meets, to the left and to the right. The foot
+/// is inside.
+pub(super) fn kept_between_edges(ray: &Ray, vertices: &[DVec3], t: f64) -> f64 {
+    // Distance from the foot, and t.
+    let (mut left, mut right) = ((f64::INFINITY, t), (f64::INFINITY, t));
+    let mut from = ray.project(vertices[vertices.len() - 1]);
+    for &vertex in vertices {
+        let to = ray.project(vertex);
+        if (from.y < 0.0) != (to.y < 0.0) {
+            let at = level_with_foot(from, to);
+            let side = if crosses(from, to) { &mut right } else { &mut left };
+            if at.x.abs() < side.0 {
+                *side = (at.x.abs(), at.z);
+            }
+        }
+        from = to;
+    }
+    t.clamp(left.1.min(right.1), left.1.max(right.1))
+}
+
+/// The point of an edge from below the foot to above it, or back, that is level with it.
+fn level_with_foot(from: DVec3, to: DVec3) -> DVec3 {
+    from.lerp(to, from.y / (from.y - to.y))
 }

@@ -171,8 +171,7 @@ impl Primitive {
     }
 
     /// t, moved to where the ray is within the bounds of this primitive. Seen nearly edge-on, the plane of a polygon that
-    /// rounding has bent is met where nothing of the polygon is; to which hit is nearer it is where its bounds are, or else that would
-    /// turn on which is looked at first.
+    /// rounding has bent is met where nothing of the polygon is, and which hit is nearer would turn on which is looked at first.
     pub(super) fn within_bounds(&self, ray: &Ray, t: f64) -> f64 {
         let (low, high) = self.bounds();
         let [one, other] = [low, high].map(|corner| (corner - ray.origin) / ray.direction);
@@ -284,7 +283,6 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
         return None;
     }
     let slope = normal.dot(ray.direction);
-    // A plane seen nearly edge-on is met anywhere; a point of the polygon is no nearer than its nearest vertex.
     let t = (normal.dot(vertices[0] - ray.origin) / slope).clamp(low_t, high_t);
     if has_both_sides && starts_in_plane(ray, vertices, normal) {
         match in_plane::part_beyond(ray, vertices) {
@@ -295,8 +293,11 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
             Part::Passed => return None,
         }
     }
-    // Edge-on it is not met.
-    (inside && slope != 0.0).then_some(t)
+    if !inside || slope == 0.0 {
+        return None; // or seen edge-on
+    }
+    let is_edge_on = slope.abs() < Meeting::LEAST_COSINE * ray.direction.length();
+    Some(if is_edge_on { in_plane::kept_between_edges(ray, vertices, t) } else { t })
 }
 
 /// Whether a ray starts no farther from the plane than the polygon is bent, and than coordinates are rounded.

@@ -1,7 +1,7 @@
-//! Where a point of a polygon's plane is from the polygon's outline.
+//! Where a polygon is from a point of its plane, and from a ray along its plane.
 
 use crate::lanes::Lanes;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// For a point beside the outline, the nearest point on it; none for a point inside. Corners and the point are in one space,
 /// and seen along the axis in which the normal is largest.
@@ -44,7 +44,7 @@ fn nearest(corners: &[Vec3], point: DVec3) -> DVec3 {
         let edge = to - from;
         let length_squared = edge.length_squared();
         let share = if length_squared > 0.0 { (point - from).dot(edge) / length_squared } else { 0.0 };
-        let at = from + edge * Lanes::min(Lanes::max(share, 0.0), 1.0);
+        let at = from + edge * kept_on_edge(share);
         let distance = at.distance_squared(point);
         if distance < nearest.0 {
             nearest = (distance, at);
@@ -54,9 +54,81 @@ fn nearest(corners: &[Vec3], point: DVec3) -> DVec3 {
     nearest.1
 }
 
+/// t of a ray that sees the polygon edge-on and is known to meet it, as far as f32 can tell: one that `t` stands for, moved to
+/// between the edges on either side of the ray. If f64 sees the ray pass outside, that of the nearest point of an edge. Corners
+/// and the ray are in one space.
+#[cold]
+pub(super) fn kept_between_edges(corners: &[Vec3], [origin, direction]: [DVec3; 2], t: f64) -> f64 {
+    let third = direction.abs().max_position();
+    // As seen along the ray, with t for the third coordinate.
+    let see = |corner: &Vec3| {
+        let from_origin = corner.as_dvec3() - origin;
+        let t = from_origin[third] / direction[third];
+        let at = from_origin - direction * t;
+        DVec3::new(at[(third + 1) % 3], at[(third + 2) % 3], t)
+    };
+    // Distance from the ray, and t.
+    let nothing = (f64::INFINITY, t);
+    let (mut left, mut right, mut nearest) = (nothing, nothing, nothing);
+    let keep_nearer = |place: &mut (f64, f64), (distance, t): (f64, f64)| {
+        if distance < place.0 {
+            *place = (distance, t);
+        }
+    };
+    let mut is_inside = false;
+    let mut from = corners.last().map_or(DVec3::ZERO, see);
+    for to in corners.iter().map(see) {
+        let share = share_nearest(from.truncate(), to.truncate(), DVec2::ZERO);
+        let at = from.lerp(to, share);
+        keep_nearer(&mut nearest, (at.truncate().length(), at.z));
+        if (from.y < 0.0) != (to.y < 0.0) {
+            let at = from.lerp(to, from.y / (from.y - to.y));
+            let is_right = at.x > 0.0;
+            is_inside ^= is_right;
+            keep_nearer(if is_right { &mut right } else { &mut left }, (at.x.abs(), at.z));
+        }
+        from = to;
+    }
+    let (one, other) = if is_inside { (left.1, right.1) } else { (nearest.1, nearest.1) };
+    Lanes::max(Lanes::min(t, Lanes::max(one, other)), Lanes::min(one, other))
+}
+
+/// How far along an edge its nearest point is, from 0 to 1.
+fn share_nearest(from: DVec2, to: DVec2, point: DVec2) -> f64 {
+    let edge = to - from;
+    let length_squared = edge.length_squared();
+    // Of an edge seen as a point it would be no number.
+    if length_squared > 0.0 { kept_on_edge((point - from).dot(edge) / length_squared) } else { 0.0 }
+}
+
+fn kept_on_edge(share: f64) -> f64 {
+    Lanes::min(Lanes::max(share, 0.0), 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An arm of a U, from u = 0 to u = 1, which the ray crosses in the middle, almost along its plane, at v = 2.
+    #[test]
+    fn a_ray_along_the_plane_meets_the_polygon_between_its_edges() {
+        let outline =
+            [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [2.0, 3.0], [2.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+        for (axis, t) in (0..3).flat_map(|axis| [1.3, 0.5, 2.7, 7.0].map(|t| (axis, t))) {
+            let place = |u: f64, v: f64, height: f64| {
+                let mut point = DVec3::ZERO;
+                (point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]) = (height, u, v);
+                point
+            };
+            let mut corners = outline.map(|[u, v]| place(u, v, 0.0).as_vec3());
+            let ray = [place(-1.0, 2.0, -1.5e-9), place(1.0, 0.0, 1e-9)];
+            for _ in 0..2 {
+                let found = kept_between_edges(&corners, ray, t);
+                assert!((1.0..=2.0).contains(&found), "{found} for {t}, axis {axis}");
+                corners.reverse();
+            }
+        }
+    }
 
     /// An L in a plane across each axis, either way round.
     #[test]

@@ -106,8 +106,9 @@ pub(super) fn surface<D: Double>(
 }
 
 /// Surfaces in lanes.
-struct Found<D> {
-    direction: Vector<D>,
+struct Found<D: Double> {
+    /// Whether the ray comes from the side of the geometric normal.
+    entering: D::Mask,
     position: Vector<D>,
     /// Outward, unit.
     geometric_normal: Vector<D>,
@@ -128,9 +129,7 @@ impl Out<'_, '_> {
         self.surfaces.set_len(first + chunk.len());
         self.work.lanes.add(D::WIDTH, chunk.len());
 
-        let zero = D::splat(0.0);
-        let entering = found.direction.dot(found.geometric_normal).lt(zero);
-        let facing = |normal: Vector<D>| Vector::select(entering, normal, -normal);
+        let facing = |normal: Vector<D>| Vector::select(found.entering, normal, -normal);
         round_rows(found.position, &mut self.surfaces.position, first, chunk.len());
         let left_out = found.position - rounded(found.position);
         round_rows(left_out, &mut self.surfaces.position_low, first, chunk.len());
@@ -140,7 +139,7 @@ impl Out<'_, '_> {
             let normal = found.shading_normal.unwrap_or(found.geometric_normal);
             round_rows(facing(normal), &mut self.normals.shading_normal, first, chunk.len());
         }
-        let entering = entering.bits();
+        let entering = found.entering.bits();
         let geometry = &self.prepared.scene.geometry;
         for (lane, row) in chunk.iter().enumerate() {
             let at = first + lane;
@@ -207,7 +206,9 @@ fn gather_rays<D: Double>(batch: &Batch<'_>, chunk: &[HitRow]) -> [Vector<D>; 2]
 }
 
 /// The root of the quadratic (see `kernel::sphere`) that the kernel chose, in f64; for a ray that starts on this sphere the
-/// one that is not 0.
+/// one that is not 0. By the nearer root the ray enters. At the outline, where both are one to f32, its angle to the normal is
+/// nothing but rounding; and there the kernel's t may be nearer to the farther root, so that is only taken where the nearer one
+/// is out of the question.
 fn spheres<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
     let [origin, direction] = gather_rays::<D>(batch, chunk);
     let [x, y, z, radius, t, own] = gather::<D, 6>(chunk, |row| {
@@ -228,10 +229,16 @@ fn spheres<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRo
     let half_squared = (radius * radius - closest.length_squared()).max(zero);
     let half_t = (half_squared / a).sqrt();
     let (near, far) = (closest_t - half_t, closest_t + half_t);
-    let root = D::select((near - t).abs().le((far - t).abs()), near, far);
-    let root = D::select(own.gt(zero), closest_t + closest_t, root);
+    let is_own = own.gt(zero);
+    let is_near = (near - t).abs().le((far - t).abs()) | (near + near).gt(t);
+    let root = D::select(is_own, closest_t + closest_t, D::select(is_near, near, far));
     let normal = (from_center + direction * root).normalized(D::splat(1.0));
-    Found { direction, position: center + normal * radius, geometric_normal: normal, shading_normal: None }
+    Found {
+        entering: is_near & !is_own,
+        position: center + normal * radius,
+        geometric_normal: normal,
+        shading_normal: None,
+    }
 }
 
 /// The barycentric weights of the hit, in f64. Source: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
@@ -270,15 +277,15 @@ fn triangles<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[Hit
         on_side_of(normal, at(0) * weight_0 + at(1) * weight_1 + at(2) * weight_2)
     });
     Found {
-        direction,
+        entering: direction.dot(normal).lt(zero),
         position: first + edge_1 * weight_1 + edge_2 * weight_2,
         geometric_normal: normal,
         shading_normal,
     }
 }
 
-/// Where the ray meets the plane, in f64, put onto the plane. A plane seen so nearly edge-on that f64 cannot tell where it
-/// is met keeps the kernel's t, which lies between the corners'.
+/// Where the ray meets the plane, in f64, put onto the plane. Of a plane seen so nearly edge-on that f64 cannot tell where it
+/// is met, between the polygon's edges.
 fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
     let geometry = &prepared.scene.geometry;
     let [origin, direction] = gather_rays::<D>(batch, chunk);
@@ -300,7 +307,12 @@ fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitR
     let normal = Vector::new(nx, ny, nz);
     let slope = normal.dot(direction);
     let is_edge_on = slope.abs().lt(D::splat(1.0 / f64::from(1 << 20)) * direction.length());
-    let t = D::select(is_edge_on, t, normal.dot(point - origin) / slope);
+    let t = if is_edge_on.any() {
+        let kept = kept_between_edges(prepared, chunk, [origin, direction], t);
+        D::select(is_edge_on, kept, normal.dot(point - origin) / slope)
+    } else {
+        normal.dot(point - origin) / slope
+    };
     let near = origin + direction * t;
     let flat = near - normal * (near - point).dot(normal);
     let position = match batch.departures {
@@ -312,7 +324,44 @@ fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitR
         let mean = patch_normals(prepared, chunk, position, normal);
         on_side_of(normal, mean)
     });
-    Found { direction, position, geometric_normal: normal, shading_normal }
+    Found { entering: slope.lt(D::splat(0.0)), position, geometric_normal: normal, shading_normal }
+}
+
+/// Row by row: see [`outline::kept_between_edges`].
+#[cold]
+fn kept_between_edges<D: Double>(
+    prepared: &Prepared<'_>,
+    chunk: &[HitRow],
+    [origin, direction]: [Vector<D>; 2],
+    t: D,
+) -> D {
+    let scale = f64::from(prepared.scale.factor());
+    let [origins, directions] = [origin, direction].map(columns_of);
+    let mut ts = [0.0; 8];
+    t.store(&mut ts);
+    for (lane, row) in chunk.iter().enumerate() {
+        let [origin, direction] =
+            [&origins, &directions].map(|columns| DVec3::from(columns.map(|column| column[lane])));
+        // In world space, where the corners are.
+        let ray = [origin / scale, direction / scale];
+        ts[lane] = outline::kept_between_edges(corners_of(prepared, row), ray, ts[lane]);
+    }
+    D::load(&ts)
+}
+
+fn columns_of<D: Double>(vector: Vector<D>) -> [[f64; 8]; 3] {
+    [vector.x, vector.y, vector.z].map(|lanes| {
+        let mut column = [0.0; 8];
+        lanes.store(&mut column);
+        column
+    })
+}
+
+/// Of a polygon, in world space.
+fn corners_of<'a>(prepared: &'a Prepared<'_>, row: &HitRow) -> &'a [Vec3] {
+    let geometry = &prepared.scene.geometry;
+    let run = geometry.polygons[row.index as usize].vertices.clone();
+    &geometry.vertices[run.start as usize..run.end as usize]
 }
 
 /// Brings points that rounding has put beside their polygon back to its nearest edge, row by row. The kernel decides from
@@ -325,20 +374,14 @@ fn on_faces<D: Double>(
     position: Vector<D>,
     normal: Vector<D>,
 ) -> Vector<D> {
-    let [mut points, mut normals] = [[[0.0; 8]; 3]; 2];
-    for (columns, vector) in [(&mut points, position), (&mut normals, normal)] {
-        for (column, component) in columns.iter_mut().zip([vector.x, vector.y, vector.z]) {
-            component.store(column);
-        }
-    }
-    let geometry = &prepared.scene.geometry;
+    let [mut points, normals] = [position, normal].map(columns_of);
     let scale = f64::from(prepared.scale.factor());
     for (lane, row) in chunk.iter().enumerate() {
-        let run = geometry.polygons[row.index as usize].vertices.clone();
-        let corners = &geometry.vertices[run.start as usize..run.end as usize];
         // In world space, where the corners are: the scale is a power of two.
         let point = points.map(|column| column[lane] / scale);
-        if let Some(nearest) = outline::beside(corners, point, normals.map(|column| column[lane])) {
+        if let Some(nearest) =
+            outline::beside(corners_of(prepared, row), point, normals.map(|column| column[lane]))
+        {
             for (column, component) in points.iter_mut().zip(nearest) {
                 column[lane] = component * scale;
             }

@@ -139,26 +139,18 @@ fn sphere(center: Vec3, radius: f32) -> String {
     format!("[[sphere]]\ncenter = {:?}\nradius = {radius:e}\nmaterial = \"m\"\n", center.to_array())
 }
 
-/// Case 50: o + t·d far away: a start that is found from so far off is on its surface all the same. In f32 this is asked where the
-/// primary ray's own hit is certain: a ray that passes an outline by less than f32 can tell may be taken to meet the far side
-/// from inside, and what it is mirrored to is then inside.
+/// Case 50: o + t·d far away: a start that is found from so far off is on its surface all the same. Where f32 meets the outline of a
+/// closed mesh that the ray passes by, it meets the faces on both sides of the edge, and beyond the edge the plane of the one that is
+/// turned away may be the nearer: that is then what is seen, from inside. So it is at no more than one pixel in 10⁴, and only
+/// where the primary ray's own hit is not certain; a sphere, a triangle and a polygon never see themselves.
 #[test]
 fn case_50_a_start_found_from_far_away() {
     for (name, shapes, center, radius) in mirrors() {
         let [certain, outline] = self_hits(name, &shapes, center, radius);
-        assert_eq!(
-            certain, 0,
-            "self-hits of the {name} of radius {radius}; {outline} more along its outline"
-        );
-    }
-}
-
-/// 50, along outlines too.
-#[test]
-#[ignore = "where f32 meets an outline that f64 passes by, the side that the ray comes from is decided by rounding"]
-fn case_50_a_start_found_from_far_away_along_outlines() {
-    for (name, shapes, center, radius) in mirrors() {
-        assert_eq!(self_hits(name, &shapes, center, radius), [0; 2], "the {name} of radius {radius}");
+        let pixels = 3 * engines().count() * 96 * 96;
+        let most = if name.starts_with("ball") { pixels / 10_000 } else { 0 };
+        assert_eq!(certain, 0, "self-hits of the {name} of radius {radius}");
+        assert!(outline <= most, "{outline} self-hits along the outline of the {name} of radius {radius}");
     }
 }
 
