@@ -50,6 +50,13 @@ fn are_equal(a: &Meeting, b: &Meeting) -> bool {
     (a.t - b.t).abs() <= a.uncertainty.max(b.uncertainty)
 }
 
+/// Seen nearly edge-on, the plane of a polygon that rounding has bent is met where nothing of the polygon is, and which hit is
+/// nearer would turn on which is looked at first.
+fn meeting_within_bounds(primitive: &Primitive, ray: &Ray) -> Option<Meeting> {
+    let meeting = primitive.intersect(ray)?;
+    Some(Meeting { t: primitive.within_bounds(ray, meeting.t), ..meeting })
+}
+
 impl Hierarchy {
     pub(super) fn new(primitives: Vec<Primitive>) -> Self {
         let items = primitives.into_iter().map(|primitive| {
@@ -76,10 +83,9 @@ impl Hierarchy {
         let mut nearest: Option<Meeting> = None;
         let mut candidates: Vec<(Meeting, &Primitive)> = Vec::new();
         self.visit(ray, self.padding(ray), f64::INFINITY, |primitive| {
-            let Some(meeting) = primitive.intersect(ray) else {
+            let Some(meeting) = meeting_within_bounds(primitive, ray) else {
                 return nearest.map_or(f64::INFINITY, |nearest| nearest.t + slack);
             };
-            let meeting = Meeting { t: primitive.within_bounds(ray, meeting.t), ..meeting };
             let nearest = match nearest {
                 Some(nearest) if nearest.t <= meeting.t => nearest,
                 _ => {
@@ -103,7 +109,8 @@ impl Hierarchy {
             |meeting: Meeting| meeting.t < end && (end - meeting.t) * meeting.approach >= off_surface;
         let mut occluded = false;
         self.visit(ray, self.padding(ray), end, |primitive| {
-            occluded |= primitive.casts_shadow && primitive.intersect(ray).is_some_and(is_before_end);
+            occluded |=
+                primitive.casts_shadow && meeting_within_bounds(primitive, ray).is_some_and(is_before_end);
             if occluded { f64::NEG_INFINITY } else { end }
         });
         occluded
@@ -323,8 +330,9 @@ mod tests {
     /// Trying every primitive: the smallest t, and the smallest id among those that equal it.
     fn closest_of_all(hierarchy: &Hierarchy, ray: &Ray) -> Option<(f64, u32)> {
         let all = hierarchy.primitives.iter();
-        let hits: Vec<(u32, Meeting)> =
-            all.filter_map(|primitive| Some((primitive.id.0, primitive.intersect(ray)?))).collect();
+        let hits: Vec<(u32, Meeting)> = all
+            .filter_map(|primitive| Some((primitive.id.0, meeting_within_bounds(primitive, ray)?)))
+            .collect();
         let nearest = hits.iter().map(|&(_, meeting)| meeting).min_by(|a, b| a.t.total_cmp(&b.t))?;
         let equal = hits.into_iter().filter(|(_, meeting)| are_equal(meeting, &nearest));
         equal.min_by_key(|&(id, _)| id).map(|(id, meeting)| (meeting.t, id))

@@ -170,8 +170,7 @@ impl Primitive {
         }
     }
 
-    /// t, moved to where the ray is within the bounds of this primitive. Seen nearly edge-on, the plane of a polygon that
-    /// rounding has bent is met where nothing of the polygon is, and which hit is nearer would turn on which is looked at first.
+    /// t, moved to where the ray is within the bounds of this primitive.
     pub(super) fn within_bounds(&self, ray: &Ray, t: f64) -> f64 {
         let (low, high) = self.bounds();
         let [one, other] = [low, high].map(|corner| (corner - ray.origin) / ray.direction);

@@ -1,43 +1,35 @@
 //! Where a polygon is from a point of its plane, and from a ray along its plane.
 
-use crate::lanes::Lanes;
+use crate::lanes::{Double, Lanes, Mask, Vector};
 use glam::{DVec2, DVec3, Vec3};
 
-/// For a point beside the outline, the nearest point on it; none for a point inside. Corners and the point are in one space,
-/// and seen along the axis in which the normal is largest.
+/// Whether the outline holds each of some points of its plane. Corners and points are in one space, and seen along the axis in
+/// which the normal is largest. The crossing number: Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994.
 #[inline(always)]
-pub(super) fn beside(corners: &[Vec3], point: [f64; 3], normal: [f64; 3]) -> Option<[f64; 3]> {
-    (!holds(corners, point, normal)).then(|| nearest(corners, DVec3::from(point)).to_array())
-}
-
-/// The crossing number: Haines, "Point in Polygon Strategies", Graphics Gems IV, 1994.
-#[inline(always)]
-fn holds(corners: &[Vec3], point: [f64; 3], normal: [f64; 3]) -> bool {
-    let [x, y, z] = normal.map(f64::abs);
-    let (u, v) = if x >= y && x >= z {
-        (1, 2)
-    } else if y >= z {
-        (2, 0)
-    } else {
-        (0, 1)
-    };
+pub(super) fn holds<D: Double>(corners: &[Vec3], points: Vector<D>, normal: DVec3) -> D::Mask {
+    let dropped = normal.abs().max_position();
+    let (u, v) = ((dropped + 1) % 3, (dropped + 2) % 3);
+    let points = [points.x, points.y, points.z];
+    let zero = D::splat(0.0);
     let seen = |corner: &Vec3| {
         let corner: &[f32; 3] = corner.as_ref();
-        [f64::from(corner[u]) - point[u], f64::from(corner[v]) - point[v]]
+        [u, v].map(|axis| D::splat(f64::from(corner[axis])) - points[axis])
     };
-    let mut is_inside = false;
-    let mut from = corners.last().map_or([0.0; 2], seen);
+    let mut is_inside = D::first(0);
+    let mut from = corners.last().map_or([zero; 2], seen);
     for corner in corners {
         let to = seen(corner);
-        let crosses = (from[1] > 0.0) != (to[1] > 0.0);
-        is_inside ^= crosses & ((from[0] * to[1] > from[1] * to[0]) == (to[1] > from[1]));
+        let crosses = from[1].gt(zero).xor(to[1].gt(zero));
+        let is_left = (from[0] * to[1]).gt(from[1] * to[0]);
+        is_inside = is_inside.xor(crosses & !is_left.xor(to[1].gt(from[1])));
         from = to;
     }
     is_inside
 }
 
+/// The point of the outline that is nearest to one in the same space.
 #[cold]
-fn nearest(corners: &[Vec3], point: DVec3) -> DVec3 {
+pub(super) fn nearest(corners: &[Vec3], point: DVec3) -> DVec3 {
     let mut nearest = (f64::INFINITY, point);
     let mut from = corners.last().map_or(point, |corner| corner.as_dvec3());
     for to in corners.iter().map(|corner| corner.as_dvec3()) {
@@ -155,11 +147,10 @@ mod tests {
             let mut corners = outline.map(|corner| DVec3::from(place(corner)).as_vec3());
             for _ in 0..2 {
                 for (point, expected) in cases {
-                    assert_eq!(
-                        beside(&corners, place(point), normal),
-                        expected.map(place),
-                        "{point:?}, axis {axis}"
-                    );
+                    let point = place(point);
+                    let is_inside: bool = holds::<f64>(&corners, Vector::splat(point), DVec3::from(normal));
+                    let found = (!is_inside).then(|| nearest(&corners, DVec3::from(point)).to_array());
+                    assert_eq!(found, expected.map(place), "{point:?}, axis {axis}");
                 }
                 corners.reverse();
             }

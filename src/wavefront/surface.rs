@@ -316,7 +316,7 @@ fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitR
     let near = origin + direction * t;
     let flat = near - normal * (near - point).dot(normal);
     let position = match batch.departures {
-        None => on_faces(prepared, chunk, flat, normal),
+        None => on_faces(prepared, chunk, flat),
         // For rays that leave a surface f64 has decided where f32 could not tell.
         Some(_) => flat,
     };
@@ -364,30 +364,45 @@ fn corners_of<'a>(prepared: &'a Prepared<'_>, row: &HitRow) -> &'a [Vec3] {
     &geometry.vertices[run.start as usize..run.end as usize]
 }
 
-/// Brings points that rounding has put beside their polygon back to its nearest edge, row by row. The kernel decides from
-/// rounded numbers that a ray from the eye meets the polygon, whose plane it may meet beyond the edge. A ray that goes inside a
-/// solid from there would enter it a second time, by the face behind the edge, and one that goes on inside a room would have
-/// left it.
-fn on_faces<D: Double>(
+/// Brings points that rounding has put beside their polygon back to its nearest edge. The kernel decides from rounded numbers
+/// that a ray from the eye meets the polygon, whose plane it may meet beyond the edge. A ray that goes inside a solid from there
+/// would enter it a second time, by the face behind the edge, and one that goes on inside a room would have left it.
+fn on_faces<D: Double>(prepared: &Prepared<'_>, chunk: &[HitRow], position: Vector<D>) -> Vector<D> {
+    // In world space, where the corners are: the scale is a power of two.
+    let scale = D::splat(f64::from(prepared.scale.factor()));
+    let points = position * (D::splat(1.0) / scale);
+    let mut is_beside = 0_u32;
+    // Rows in turn, and with the first of a polygon all others of it: neighbours often meet the same.
+    let mut waiting = (1_u32 << chunk.len()) - 1;
+    while waiting != 0 {
+        let row = &chunk[waiting.trailing_zeros() as usize];
+        let is_same = chunk
+            .iter()
+            .enumerate()
+            .fold(0, |bits, (lane, other)| bits | u32::from(other.index == row.index) << lane);
+        let normal = prepared.hierarchy.polygon_normals[row.index as usize];
+        is_beside |= is_same & !outline::holds(corners_of(prepared, row), points, normal).bits();
+        waiting &= !is_same;
+    }
+    if is_beside == 0 { position } else { moved_to_outlines(prepared, chunk, points, is_beside) * scale }
+}
+
+#[cold]
+fn moved_to_outlines<D: Double>(
     prepared: &Prepared<'_>,
     chunk: &[HitRow],
-    position: Vector<D>,
-    normal: Vector<D>,
+    points: Vector<D>,
+    is_beside: u32,
 ) -> Vector<D> {
-    let [mut points, normals] = [position, normal].map(columns_of);
-    let scale = f64::from(prepared.scale.factor());
-    for (lane, row) in chunk.iter().enumerate() {
-        // In world space, where the corners are: the scale is a power of two.
-        let point = points.map(|column| column[lane] / scale);
-        if let Some(nearest) =
-            outline::beside(corners_of(prepared, row), point, normals.map(|column| column[lane]))
-        {
-            for (column, component) in points.iter_mut().zip(nearest) {
-                column[lane] = component * scale;
-            }
+    let mut columns = columns_of(points);
+    for (lane, row) in chunk.iter().enumerate().filter(|(lane, _)| is_beside >> lane & 1 == 1) {
+        let point = DVec3::from(columns.map(|column| column[lane]));
+        let nearest = outline::nearest(corners_of(prepared, row), point).to_array();
+        for (column, component) in columns.iter_mut().zip(nearest) {
+            column[lane] = component;
         }
     }
-    let [x, y, z] = points.map(|column| D::load(&column));
+    let [x, y, z] = columns.map(|column| D::load(&column));
     Vector::new(x, y, z)
 }
 

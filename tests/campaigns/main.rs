@@ -2,7 +2,7 @@
 //! `WAVELANE_CAMPAIGN_RAYS` sets another, and the build should then be a release build:
 //!
 //! ```sh
-//! WAVELANE_CAMPAIGN_RAYS=1000000000 cargo test --release --test campaigns watertight -- --include-ignored --nocapture
+//! WAVELANE_CAMPAIGN_RAYS=1000000000 cargo test --release --test campaigns watertight -- --nocapture
 //! WAVELANE_CAMPAIGN_RAYS=100000000 cargo test --release --test campaigns self_hits -- --nocapture
 //! ```
 //!

@@ -3,13 +3,15 @@
 //! Random rays do not find cracks; aimed ones find them at once (Schirra, "How Reliable Are Practical Point-in-Polygon
 //! Strategies?", 2008). So rays go to edges, to corners, along seams and through lattices, from points that are certainly
 //! inside: `flat` and `body` prove that with f64 and bounds on what f32 may be wrong about, `starts` finds them, `aims` shoots.
-//! `every_face` tries the faces one by one, to count all hits of a ray and to hold the hierarchy to the nearest.
+//! `every_face` tries the faces one by one, to count all hits of a ray and to hold the hierarchy to the nearest; `export` writes
+//! surfaces of triangles and their rays for other tracers.
 
 mod aims;
 mod angular;
 mod body;
 mod bunny;
 mod every_face;
+mod export;
 mod flat;
 mod judge;
 mod round;
@@ -22,6 +24,7 @@ mod tracing;
 use crate::random::Random;
 use aims::{Aim, Order, Shot};
 use body::{Body, Pose};
+use export::Export;
 use judge::{Judge, Sample};
 use solids::KINDS;
 use starts::Starts;
@@ -115,6 +118,7 @@ impl Campaign {
         let (name, make) = KINDS[kind];
         let body = Body::place(&format!("{name} {number}"), &make(random), pose, random);
         let starts = Starts::inside(&body, random);
+        let export = Export::new(&body, number);
         let width = Width::ALL[number as usize % Width::ALL.len()];
         let [mut wavefront, mut reference] =
             [Engine::Wavefront(width), Engine::Reference].map(|engine| Judge {
@@ -133,6 +137,9 @@ impl Campaign {
             let count = self.rays_of(&body, aim, aims.len() as u64).div_ceil(2) as usize;
             let mut shots = aims::inside(&body, &starts, (aim, Order::Coherent), count, random);
             shots.extend(aims::inside(&body, &starts, (aim, Order::Shuffled), count, random));
+            if let Some(export) = &export {
+                export.rays(aim, &shots);
+            }
             wavefront.all_are_caught(aim, &shots);
             reference.all_are_caught(aim, &thinned(&shots, shots.len() / REFERENCE_SHARE));
             let inside = thinned(&shots, counted).into_iter();
