@@ -54,7 +54,9 @@ fn are_equal(a: &Meeting, b: &Meeting) -> bool {
 /// nearer would turn on which is looked at first.
 fn meeting_within_bounds(primitive: &Primitive, ray: &Ray) -> Option<Meeting> {
     let meeting = primitive.intersect(ray)?;
-    Some(Meeting { t: primitive.within_bounds(ray, meeting.t), ..meeting })
+    let t = primitive.within_bounds(ray, meeting.t);
+    // What has been decided about the start stays so.
+    Some(if t > ray.t_min { Meeting { t, ..meeting } } else { meeting })
 }
 
 impl Hierarchy {

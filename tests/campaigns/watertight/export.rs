@@ -23,7 +23,7 @@ impl Export {
         }
         fs::create_dir_all(&folder).unwrap();
         let export = Self { folder };
-        let vertices = geometry.vertices.iter().flat_map(|vertex| vertex.to_array());
+        let vertices = geometry.vertices.iter().flat_map(glam::Vec3::to_array);
         export.write("vertices", ("<f4", 3), vertices.flat_map(f32::to_le_bytes).collect());
         let triangles = geometry.triangles.iter().flat_map(|triangle| triangle.vertices);
         export.write("triangles", ("<u4", 3), triangles.flat_map(u32::to_le_bytes).collect());
