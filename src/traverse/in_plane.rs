@@ -69,17 +69,15 @@ impl Outline {
         let mut is_in = false;
         // Distance from the foot, and t.
         let mut nearest = (f64::INFINITY, t_min);
-        // Where the outline passes t_min, and whether that is below the foot.
-        let mut cuts: Vec<(DVec2, bool)> = Vec::new();
+        let mut cuts: Vec<Cut> = Vec::new();
         for (from, to) in self.edges() {
             let is_below = [from, to].map(|end| end.seen.y < 0.0);
             let is_beyond = [from, to].map(|end| end.at.z > t_min);
             let mut changes_side = is_below[0] != is_below[1];
             if is_beyond[0] != is_beyond[1] {
-                let cut = from.at.lerp(to.at, (from.at.z - t_min) / (from.at.z - to.at.z));
-                let is_cut_below = if changes_side { cut.y < 0.0 } else { is_below[0] };
-                changes_side = is_cut_below != is_below[usize::from(is_beyond[1])];
-                cuts.push((cut.truncate(), is_cut_below));
+                let cut = Cut::new(from, to, (from.at.z - t_min) / (from.at.z - to.at.z));
+                changes_side = cut.is_below != is_below[usize::from(is_beyond[1])];
+                cuts.push(cut);
             } else {
                 changes_side &= is_beyond[0];
             }
@@ -103,24 +101,46 @@ fn is_crossed(from: &Corner, to: &Corner) -> bool {
     crosses(&from.seen, &to.seen, cross(&from.seen, &to.seen), 0.0)
 }
 
-/// Whether the lines between cuts cross the half-line from the foot along x an odd number of times; none if the foot is on
+/// Where an edge passes `t_min`.
+struct Cut {
+    at: DVec2,
+    /// By what f32 has made of the edge's ends, which is what its neighbour has, too.
+    seen: DVec2,
+    is_below: bool,
+}
+
+impl Cut {
+    fn new(from: &Corner, to: &Corner, share: f64) -> Self {
+        let [seen_from, seen_to] =
+            [from, to].map(|end| DVec2::new(f64::from(end.seen.x), f64::from(end.seen.y)));
+        let seen = seen_from.lerp(seen_to, share);
+        let is_below = match [seen_from, seen_to].map(|end| end.y < 0.0) {
+            [true, true] => true,
+            [false, false] => false,
+            _ => seen.y < 0.0,
+        };
+        Self { at: from.at.lerp(to.at, share).truncate(), seen, is_below }
+    }
+}
+
+/// Whether the lines between cuts cross the half-line from the foot along x an odd number of times; none if the start is on
 /// one of them.
-fn is_in_by_cuts(mut cuts: Vec<(DVec2, bool)>) -> Option<bool> {
+fn is_in_by_cuts(mut cuts: Vec<Cut>) -> Option<bool> {
     let (low, high) = cuts
         .iter()
-        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &(cut, _)| (low.min(cut), high.max(cut)));
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), cut| (low.min(cut.at), high.max(cut.at)));
     // They are on a line. Along it, inside is between the first and the second, the third and the fourth.
     let axis = usize::from((high - low).y > (high - low).x);
-    cuts.sort_by(|one, other| one.0[axis].total_cmp(&other.0[axis]));
+    cuts.sort_by(|one, other| one.at[axis].total_cmp(&other.at[axis]));
     let mut is_in = false;
     for pair in cuts.chunks_exact(2) {
-        let [(one, is_one_below), (other, is_other_below)] = [pair[0], pair[1]];
-        if one[axis] <= 0.0 && other[axis] >= 0.0 {
+        let [one, other] = [&pair[0], &pair[1]];
+        if one.at[axis] <= 0.0 && other.at[axis] >= 0.0 {
             return None;
         }
-        if is_one_below != is_other_below {
-            let (lower, upper) = if is_one_below { (one, other) } else { (other, one) };
-            is_in ^= lower.perp_dot(upper) > 0.0;
+        if one.is_below != other.is_below {
+            let (lower, upper) = if one.is_below { (one, other) } else { (other, one) };
+            is_in ^= lower.seen.perp_dot(upper.seen) > 0.0;
         }
     }
     Some(is_in)

@@ -14,6 +14,7 @@ hard_cases! {
     case_19_zero_area: ZERO_AREA,
     case_20_needle_across: NEEDLE_ACROSS,
     case_20_needle_along: NEEDLE_ALONG,
+    case_20_needle_tip: NEEDLE_TIP,
     case_22_underflow_beside_a_unit: UNDERFLOW,
     case_22_underflow_alone: UNDERFLOW_ALONE,
     case_24_huge_extents_of_triangles: HUGE_TRIANGLES,
@@ -154,6 +155,31 @@ const NEEDLE_ACROSS: Case = Case {
         let misses =
             misses.map(|(origin, direction)| ray(origin, direction).may_hit(0, 500.0, near, WITHIN_ROUNDING));
         hits.into_iter().chain(misses).collect()
+    },
+};
+
+/// Six faces at a tip that the ray goes through exactly. So narrow a face has hardly any volume for a start to be off its plane by: f64
+/// decides on which side of it the ray starts, which must not let the faces disagree about an edge that only f32 has the ray pass.
+const NEEDLE_TIP: Case = Case {
+    number: 20,
+    name: "needle, its tip",
+    shapes: || {
+        let tips = [[0.247_399, -0.396_876_34, -0.174_099_6], [-0.247_298_21, 0.397_252_44, 0.178_936_03]];
+        let ring = [
+            [0.002_624_029_8, 0.001_090_639_2, 0.003_994_258],
+            [0.000_469_158_67, -0.000_858_657_35, 0.005_359_513],
+            [-0.002_166_82, -0.001_715_719_9, 0.003_593_705],
+            [-0.002_650_435_3, -0.001_008_027, 0.001_324_125],
+            [-0.000_458_962_55, 0.001_180_346_6, -0.000_527_628_3],
+            [0.001_961_101_3, 0.002_098_236_5, 0.000_798_799_4],
+        ];
+        let side = |(tip, at): (usize, usize)| Triangle([tips[tip], ring[at], ring[(at + 1) % 6]]);
+        (0..6).flat_map(|at| [side((0, at)), side((1, at))]).collect()
+    },
+    rays: || {
+        let to_tip =
+            ray([-0.103_964_37, 0.166_944_5, 0.077_743_77], [-0.143_333_84, 0.230_307_94, 0.101_192_266]);
+        vec![to_tip.hits_something_at(1.0, Ulps(1.0)).on_faces(Faces::Exactly(1))]
     },
 };
 
