@@ -21,25 +21,27 @@ pub(super) enum Part {
     Passed,
 }
 
-/// The part of a face that lies beyond `t_min`, for a ray that starts in the face's plane; seen along the ray.
+/// The part of a face that lies beyond `t_min`, for a ray that starts in the face's plane; seen along the ray. What is no farther
+/// than `slack`, a length, from the start is at the start.
 ///
 /// The edges beyond `t_min` are asked just what neighbours ask of them (`crosses`), and every point is above the foot or below
 /// it for both lines that end there. So however points are rounded, the lines are closed, and no ray slips between a face that
 /// is cut so and its neighbour.
-pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3]) -> Part {
+pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3], slack: f64) -> Part {
+    let t_min = ray.t_min + slack / ray.direction.abs().max_element();
     let mut is_in = false;
     // Distance from the foot, and t.
-    let mut nearest = (f64::INFINITY, ray.t_min);
+    let mut nearest = (f64::INFINITY, t_min);
     // Where the outline passes t_min, and whether that is below the foot.
     let mut cuts: Vec<(DVec3, bool)> = Vec::new();
     let mut from = ray.project(vertices[vertices.len() - 1]);
     for &vertex in vertices {
         let to = ray.project(vertex);
         let is_below = [from, to].map(|end| end.y < 0.0);
-        let is_beyond = [from, to].map(|end| end.z > ray.t_min);
+        let is_beyond = [from, to].map(|end| end.z > t_min);
         let mut changes_side = is_below[0] != is_below[1];
         if is_beyond[0] != is_beyond[1] {
-            let cut = from.lerp(to, (from.z - ray.t_min) / (from.z - to.z));
+            let cut = from.lerp(to, ((from.z - ray.t_min) / (from.z - to.z)).clamp(0.0, 1.0));
             let is_cut_below = if changes_side { cut.y < 0.0 } else { is_below[0] };
             changes_side = is_cut_below != is_below[usize::from(is_beyond[1])];
             cuts.push((cut, is_cut_below));
@@ -64,7 +66,7 @@ pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3]) -> Part {
     cuts.sort_by(|one, other| one.0[axis].total_cmp(&other.0[axis]));
     for pair in cuts.chunks_exact(2) {
         let [(one, is_one_below), (other, is_other_below)] = [pair[0], pair[1]];
-        if one[axis] <= 0.0 && other[axis] >= 0.0 {
+        if one[axis] <= slack && other[axis] >= -slack {
             return Part::StartsOn;
         }
         if is_one_below != is_other_below {

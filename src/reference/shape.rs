@@ -101,7 +101,7 @@ impl Primitive {
     /// than rounding is 0: this primitive touches that surface there, however large either may be.
     pub(super) fn intersect(&self, ray: &Ray) -> Option<Meeting> {
         let departure = ray.departure.filter(|departure| departure.from == self.id);
-        let rounding = Meeting::ROUNDING * (self.extent + ray.origin.abs().max_element());
+        let rounding = rounding_at(ray, self.extent);
         let meeting = |t: f64, normal: DVec3| {
             let length = ray.direction.length();
             let cosine = (normal.dot(ray.direction).abs() / length).max(Meeting::LEAST_COSINE);
@@ -123,7 +123,10 @@ impl Primitive {
                 let roots = sphere(ray, *center, *radius)?;
                 roots.into_iter().find_map(|t| meeting(t, (ray.at(t) - *center) / *radius))
             }
-            (Shape::Triangle { vertices, normal, .. }, None) => meeting(triangle(ray, vertices)?.t, *normal),
+            (Shape::Triangle { vertices, normal, .. }, None) => {
+                let t = triangle(ray, vertices)?.t;
+                meeting(exact_beside_start(ray, vertices, (*normal, rounding), t), *normal)
+            }
             (Shape::Polygon { vertices, normal, .. }, None) => {
                 meeting(polygon(ray, vertices, *normal)?, *normal)
             }
@@ -282,9 +285,12 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
         return None;
     }
     let slope = normal.dot(ray.direction);
+    let extent = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(0.0, f64::max);
+    let rounding = rounding_at(ray, extent);
     let t = (normal.dot(vertices[0] - ray.origin) / slope).clamp(low_t, high_t);
-    if has_both_sides && starts_in_plane(ray, vertices, normal) {
-        match in_plane::part_beyond(ray, vertices) {
+    let t = exact_beside_start(ray, vertices, (normal, rounding), t);
+    if has_both_sides && starts_in_plane(ray, vertices, normal, rounding) {
+        match in_plane::part_beyond(ray, vertices, rounding) {
             Part::StartsOn => {}
             Part::Met(_) if t > ray.t_min => return Some(t),
             Part::Met(edge_t) if edge_t > ray.t_min => return Some(edge_t),
@@ -300,12 +306,22 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
 }
 
 /// Whether a ray starts no farther from the plane than the polygon is bent, and than coordinates are rounded.
-fn starts_in_plane(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> bool {
-    let start = ray.at(ray.t_min);
+fn starts_in_plane(ray: &Ray, vertices: &[DVec3], normal: DVec3, rounding: f64) -> bool {
     let height = |point: DVec3| normal.dot(point - vertices[0]).abs();
     let bend = vertices.iter().map(|&vertex| height(vertex)).fold(0.0, f64::max);
-    let extent = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(0.0, f64::max);
-    height(start) <= bend + Meeting::ROUNDING * (extent + start.abs().max_element())
+    height(ray.at(ray.t_min)) <= bend + rounding
+}
+
+/// t of a face that is met no farther from where the ray starts than rounding can tell: that of the plane by a normal whose length
+/// loses nothing, so that a start that is exactly on the face does not meet it.
+fn exact_beside_start(ray: &Ray, vertices: &[DVec3], (normal, rounding): (DVec3, f64), t: f64) -> f64 {
+    let length = ray.direction.length();
+    let approach = normal.dot(ray.direction).abs().max(Meeting::LEAST_COSINE * length);
+    if (t - ray.t_min).abs() * approach > rounding {
+        return t;
+    }
+    let double_area = double_area(vertices);
+    double_area.dot(vertices[0] - ray.origin) / double_area.dot(ray.direction)
 }
 
 /// Whether an edge crosses the half-line from the ray's foot along x. Half open: a vertex level with the foot counts as above
@@ -322,15 +338,21 @@ pub(super) fn cross(a: DVec3, b: DVec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
+/// How far a hit point may be off a primitive by rounding, which reaches so far from the world's origin.
+fn rounding_at(ray: &Ray, extent: f64) -> f64 {
+    Meeting::ROUNDING * (extent + ray.origin.abs().max_element())
+}
+
 /// Newell's normal, unit Σ p_k × p_k+1.
 fn newell_normal(vertices: &[DVec3]) -> DVec3 {
+    double_area(vertices).normalize()
+}
+
+/// As long as twice the area.
+fn double_area(vertices: &[DVec3]) -> DVec3 {
     let origin = vertices[0];
     let next = vertices.iter().cycle().skip(1);
-    let sum = vertices
-        .iter()
-        .zip(next)
-        .fold(DVec3::ZERO, |sum, (&from, &to)| sum + (from - origin).cross(to - origin));
-    sum.normalize()
+    vertices.iter().zip(next).fold(DVec3::ZERO, |sum, (&from, &to)| sum + (from - origin).cross(to - origin))
 }
 
 /// The barycentric mean of a patch's normals over the triangle of its fan (0, k, k+1) that holds the point; where

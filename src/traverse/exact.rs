@@ -177,15 +177,19 @@ impl Line {
             let t = rounded(hit.t);
             (hit.t > f64::from(self.t_min) && t > self.t_min).then_some(t)
         };
-        let (hit, corners) = match spot.shape(hierarchy) {
+        let corners = match spot.shape(hierarchy) {
             Shape::Sphere { center, radius, .. } => {
                 return self.sphere(center, radius).into_iter().find_map(beyond);
             }
-            Shape::Triangle(vertices) => (self.triangle(vertices), vertices.to_vec()),
-            Shape::Polygon { normal, corners } => (self.polygon(normal, &corners), corners),
+            Shape::Triangle(vertices) => vertices.to_vec(),
+            Shape::Polygon { corners, .. } => corners,
         };
+        // Of a length that loses nothing: a start that is exactly in the plane is at height 0.
+        let normal = double_area(&corners);
+        let hit = self.plane(corners[0], normal, normal.length(), corners.iter().copied());
         let outline = Outline::new(self.origin, self.direction, &corners);
-        match outline.part_beyond(f64::from(self.t_min)) {
+        let slack = TOUCHING * (extent_of(corners.into_iter()) + self.origin.abs().max_element());
+        match outline.part_beyond(f64::from(self.t_min), slack) {
             Part::StartsOn if outline.is_foot_inside() => beyond(hit),
             Part::StartsOn | Part::Passed => None,
             Part::Met(edge_t) => {
@@ -352,6 +356,11 @@ impl Line {
         let t = if t >= enter { t } else { enter };
         Hit { t, cosine: slope.abs() / (length * self.direction.length()) }
     }
+}
+
+/// Newell's normal, as long as twice the area.
+fn double_area(corners: &[DVec3]) -> DVec3 {
+    corners.windows(2).fold(DVec3::ZERO, |sum, edge| sum + (edge[0] - corners[0]).cross(edge[1] - corners[0]))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]

@@ -6,11 +6,14 @@
 //! start is not on that line, or it would be on the face.
 
 use crate::kernel::{RaySpace, Seen, axes_along, cross, crosses};
+use crate::lanes::Lanes;
 use glam::{DVec2, DVec3};
 
 /// A face as seen along a ray.
 pub(super) struct Outline {
     corners: Vec<Corner>,
+    /// Along the axis in which the ray is fastest.
+    t_per_length: f64,
 }
 
 /// What the kernels see, and the same in f64 with t for the third coordinate.
@@ -48,7 +51,7 @@ impl Outline {
             let corner = corner.as_vec3();
             Corner { seen: space.see(axes.map(|axis| corner[axis])), at: DVec3::new(at[x], at[y], t) }
         };
-        Self { corners: corners.iter().map(see).collect() }
+        Self { corners: corners.iter().map(see).collect(), t_per_length: direction[z].abs().recip() }
     }
 
     fn edges(&self) -> impl Iterator<Item = (&Corner, &Corner)> {
@@ -60,12 +63,14 @@ impl Outline {
         self.edges().filter(|(from, to)| is_crossed(from, to)).count() % 2 == 1
     }
 
-    /// What lies beyond `t_min` of a face in whose plane the ray starts.
+    /// What lies beyond a t of a face in whose plane the ray starts there. What is no farther than `slack`, a length, from
+    /// the start is at the start.
     ///
     /// The edges there are asked just what the kernels ask of them, and every point is above the foot or below it for both lines
     /// that end there. So however points are rounded, the lines are closed, and no ray slips between a face that is cut so and
     /// its neighbour.
-    pub(super) fn part_beyond(&self, t_min: f64) -> Part {
+    pub(super) fn part_beyond(&self, start_t: f64, slack: f64) -> Part {
+        let t_min = start_t + slack * self.t_per_length;
         let mut is_in = false;
         // Distance from the foot, and t.
         let mut nearest = (f64::INFINITY, t_min);
@@ -75,7 +80,7 @@ impl Outline {
             let is_beyond = [from, to].map(|end| end.at.z > t_min);
             let mut changes_side = is_below[0] != is_below[1];
             if is_beyond[0] != is_beyond[1] {
-                let cut = Cut::new(from, to, (from.at.z - t_min) / (from.at.z - to.at.z));
+                let cut = Cut::new(from, to, kept_on_edge((from.at.z - start_t) / (from.at.z - to.at.z)));
                 changes_side = cut.is_below != is_below[usize::from(is_beyond[1])];
                 cuts.push(cut);
             } else {
@@ -89,7 +94,7 @@ impl Outline {
                 }
             }
         }
-        match is_in_by_cuts(cuts) {
+        match is_in_by_cuts(cuts, slack) {
             None => Part::StartsOn,
             Some(is_in_by_cuts) if is_in_by_cuts == is_in => Part::Passed,
             Some(_) => Part::Met(nearest.1),
@@ -125,7 +130,7 @@ impl Cut {
 
 /// Whether the lines between cuts cross the half-line from the foot along x an odd number of times; none if the start is on
 /// one of them.
-fn is_in_by_cuts(mut cuts: Vec<Cut>) -> Option<bool> {
+fn is_in_by_cuts(mut cuts: Vec<Cut>, slack: f64) -> Option<bool> {
     let (low, high) = cuts
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), cut| (low.min(cut.at), high.max(cut.at)));
@@ -135,7 +140,7 @@ fn is_in_by_cuts(mut cuts: Vec<Cut>) -> Option<bool> {
     let mut is_in = false;
     for pair in cuts.chunks_exact(2) {
         let [one, other] = [&pair[0], &pair[1]];
-        if one.at[axis] <= 0.0 && other.at[axis] >= 0.0 {
+        if one.at[axis] <= slack && other.at[axis] >= -slack {
             return None;
         }
         if one.is_below != other.is_below {
@@ -148,8 +153,10 @@ fn is_in_by_cuts(mut cuts: Vec<Cut>) -> Option<bool> {
 
 /// The point of an edge that is level with the foot; f32 has found that there is one.
 fn level_with_foot(from: DVec3, to: DVec3) -> DVec3 {
-    let share = from.y / (from.y - to.y);
-    // Where f64 finds none it is outside of these, or no number.
-    let share = if share > 0.0 { if share < 1.0 { share } else { 1.0 } } else { 0.0 };
-    from.lerp(to, share)
+    // Where f64 finds none it would be outside of the edge, or no number.
+    from.lerp(to, kept_on_edge(from.y / (from.y - to.y)))
+}
+
+fn kept_on_edge(share: f64) -> f64 {
+    Lanes::min(Lanes::max(share, 0.0), 1.0)
 }

@@ -91,6 +91,60 @@ fn case_6_leaving_the_surface() {
     }
 }
 
+/// 6: A ray that starts exactly on a face, which it is not said to leave, meets it at t = 0 and nowhere else: no hit. Corners are whole
+/// numbers and starts eighths of the way between them, so nothing is rounded but the normal's length.
+#[test]
+fn case_6_a_start_exactly_on_a_face_is_no_hit() {
+    let spans = [
+        ([5, -2, 7], [-3, 6, 9]),
+        ([1, 2, 2], [-2, -1, 2]),
+        ([3, 0, 0], [0, 0, -4]),
+        ([7, -11, 3], [2, 5, -13]),
+        ([0, 1, 1], [1, 0, 0]),
+    ];
+    let l_shape: [[f32; 2]; 6] = [[0.0, 0.0], [8.0, 0.0], [8.0, 2.0], [2.0, 2.0], [2.0, 8.0], [0.0, 8.0]];
+    let holds = |u: i8, v: i8| (u <= 8 && v <= 2) || (u <= 2 && v <= 8);
+    let mut starts = 0;
+    for ((u, v), is_polygon) in spans.into_iter().flat_map(|span| [(span, false), (span, true)]) {
+        let [u, v] = [u, v].map(|vector| Vec3::from(vector.map(|component: i8| f32::from(component))));
+        let place = |[along_u, along_v]: [f32; 2]| {
+            Vec3::new(1.0, 2.0, -3.0) + (along_u / 8.0) * u + (along_v / 8.0) * v
+        };
+        let corners = if is_polygon {
+            l_shape.map(place).to_vec()
+        } else {
+            [[0.0, 0.0], [8.0, 0.0], [0.0, 8.0]].map(place).to_vec()
+        };
+        let upright = Place { turned: false, offset: 0.0 };
+        let face = upright.face(if is_polygon { "polygon" } else { "triangle" }, &corners, "m");
+        let scene = scene(&format!(
+            "[image]\nsize = [1, 1]\n[camera]\neye = [0, 0, 99]\ntarget = [0, 0, 0]\nup = [0, 1, 0]\nfov = 45\n[material.m]\n{face}"
+        ));
+        let normal = u.cross(v).normalize();
+        let mut rays = RaySet::default();
+        for (along_u, along_v) in (0..=8_i8).flat_map(|u| (0..=8_i8).map(move |v| (u, v))) {
+            if !(if is_polygon { holds(along_u, along_v) } else { along_u + along_v <= 8 }) {
+                continue;
+            }
+            let [ox, oy, oz] = place([f32::from(along_u), f32::from(along_v)]).to_array();
+            for turn in 0..24_u8 {
+                let (sin, cos) = (0.7 + 0.26 * f32::from(turn)).sin_cos();
+                let height = [1.0, 0.1, -0.01, -1.0][usize::from(turn % 4)];
+                let direction = cos * u.normalize() + sin * u.cross(normal).normalize() + height * normal;
+                let [dx, dy, dz] = direction.to_array();
+                rays.rows.push([ox, oy, oz, 0.0, dx, dy, dz, f32::INFINITY]);
+            }
+        }
+        starts += rays.len();
+        for (engine, hits) in traced(&scene, &rays) {
+            for (row, id) in rays.rows.iter().zip(&hits.id) {
+                assert_eq!(*id, Hits::MISS, "{row:?} on {corners:?}, {engine:?}");
+            }
+        }
+    }
+    assert!(starts > 8000, "{starts} rays");
+}
+
 /// Mirrors around which nothing is, near the origin and seen from 10⁴ away, show the background: what is black has met itself.
 /// Returns at how many pixels that happens where the primary ray's hit is certain, and where it is not.
 fn self_hits(name: &str, shapes: &str, center: Vec3, radius: f32) -> [usize; 2] {
