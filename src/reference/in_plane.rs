@@ -57,6 +57,11 @@ pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3], slack: f64) -> Part {
         }
         from = to;
     }
+    // All of it is at the start or behind: that lies across the ray, and its plane says more than its corners.
+    let end = vertices.iter().map(|&vertex| ray.project(vertex).z).fold(f64::NEG_INFINITY, f64::max);
+    if end <= t_min && end >= ray.t_min - (t_min - ray.t_min) {
+        return Part::StartsOn;
+    }
     // The cuts are on a line. Along it, inside is between the first and the second, the third and the fourth.
     let spread = |axis: usize| {
         let along = || cuts.iter().map(|(cut, _)| cut[axis]);

@@ -321,7 +321,11 @@ fn exact_beside_start(ray: &Ray, vertices: &[DVec3], (normal, rounding): (DVec3,
         return t;
     }
     let double_area = double_area(vertices);
-    double_area.dot(vertices[0] - ray.origin) / double_area.dot(ray.direction)
+    let t = double_area.dot(vertices[0] - ray.origin) / double_area.dot(ray.direction);
+    // Edge-on it may be anywhere, but the face is where its vertices are.
+    let ts = || vertices.iter().map(|&vertex| ray.project(vertex).z);
+    let slack = rounding / ray.direction.abs().max_element();
+    t.clamp(ts().fold(f64::INFINITY, f64::min) - slack, ts().fold(f64::NEG_INFINITY, f64::max) + slack)
 }
 
 /// Whether an edge crosses the half-line from the ray's foot along x. Half open: a vertex level with the foot counts as above

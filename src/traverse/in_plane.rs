@@ -94,6 +94,11 @@ impl Outline {
                 }
             }
         }
+        // All of it is at the start or behind: that lies across the ray, and its plane says more than its corners.
+        let end = self.corners.iter().map(|corner| corner.at.z).fold(f64::NEG_INFINITY, Lanes::max);
+        if end <= t_min && end >= start_t - (t_min - start_t) {
+            return Part::StartsOn;
+        }
         match is_in_by_cuts(cuts, slack) {
             None => Part::StartsOn,
             Some(is_in_by_cuts) if is_in_by_cuts == is_in => Part::Passed,
