@@ -28,7 +28,8 @@ pub(super) enum Part {
 /// it for both lines that end there. So however points are rounded, the lines are closed, and no ray slips between a face that
 /// is cut so and its neighbour.
 pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3], slack: f64) -> Part {
-    let t_min = ray.t_min + slack / ray.direction.abs().max_element();
+    let slack_t = slack / ray.direction.abs().max_element();
+    let t_min = ray.t_min + slack_t;
     let mut is_in = false;
     // Distance from the foot, and t.
     let mut nearest = (f64::INFINITY, t_min);
@@ -59,7 +60,7 @@ pub(super) fn part_beyond(ray: &Ray, vertices: &[DVec3], slack: f64) -> Part {
     }
     // All of it is at the start or behind: that lies across the ray, and its plane says more than its corners.
     let end = vertices.iter().map(|&vertex| ray.project(vertex).z).fold(f64::NEG_INFINITY, f64::max);
-    if end <= t_min && end >= ray.t_min - (t_min - ray.t_min) {
+    if end <= t_min && end >= ray.t_min - slack_t {
         return Part::StartsOn;
     }
     // The cuts are on a line. Along it, inside is between the first and the second, the third and the fourth.

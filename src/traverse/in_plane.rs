@@ -22,12 +22,12 @@ struct Corner {
     at: DVec3,
 }
 
-/// What a ray meets of a face that has corners on both sides of `t_min`.
+/// What a ray meets of a face in whose plane it starts, as far as f32 can tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Part {
     /// The start is on the face, or as near as rounding can tell.
     StartsOn,
-    /// About where the edges there have this t: better known only where the ray meets the plane beyond `t_min`.
+    /// About where the edges there have this t: better known only where the ray meets the plane beyond its start.
     Met(f64),
     Passed,
 }
@@ -70,7 +70,8 @@ impl Outline {
     /// that end there. So however points are rounded, the lines are closed, and no ray slips between a face that is cut so and
     /// its neighbour.
     pub(super) fn part_beyond(&self, start_t: f64, slack: f64) -> Part {
-        let t_min = start_t + slack * self.t_per_length;
+        let slack_t = slack * self.t_per_length;
+        let t_min = start_t + slack_t;
         let mut is_in = false;
         // Distance from the foot, and t.
         let mut nearest = (f64::INFINITY, t_min);
@@ -96,7 +97,7 @@ impl Outline {
         }
         // All of it is at the start or behind: that lies across the ray, and its plane says more than its corners.
         let end = self.corners.iter().map(|corner| corner.at.z).fold(f64::NEG_INFINITY, Lanes::max);
-        if end <= t_min && end >= start_t - (t_min - start_t) {
+        if end <= t_min && end >= start_t - slack_t {
             return Part::StartsOn;
         }
         match is_in_by_cuts(cuts, slack) {
@@ -111,7 +112,7 @@ fn is_crossed(from: &Corner, to: &Corner) -> bool {
     crosses(&from.seen, &to.seen, cross(&from.seen, &to.seen), 0.0)
 }
 
-/// Where an edge passes `t_min`.
+/// Where an edge passes the t at which the ray starts.
 struct Cut {
     at: DVec2,
     /// By what f32 has made of the edge's ends, which is what its neighbour has, too.
