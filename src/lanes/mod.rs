@@ -8,6 +8,9 @@
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod cpu;
 mod isa;
+mod pack;
+mod prefetch;
+mod records;
 mod scalar;
 #[cfg(test)]
 mod tests;
@@ -16,6 +19,7 @@ mod wide_types;
 mod widths;
 
 pub use isa::Isa;
+pub(crate) use prefetch::prefetch;
 pub(crate) use vector::Vector;
 pub(crate) use widths::Job;
 pub use widths::Width;
@@ -113,7 +117,21 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
     fn ids_odd(ids: Self::Ids) -> Self::Mask;
     /// All ids without their lowest bit, halved.
     fn ids_half(ids: Self::Ids) -> Self::Ids;
+    /// Stores the ids of the lanes whose bits are set, one after the other from the start, and anything behind them, of a
+    /// slice that has room for all.
+    fn pack_ids(ids: Self::Ids, bits: u32, to: &mut [u32]);
+    /// The bits of each lane, which held an id or what else has 32 bits.
+    fn bits_as_ids(self) -> Self::Ids;
+    /// Turns a record for each lane into lanes for each of its numbers.
+    fn transposed<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; RECORD];
+    /// The reverse: into the first [`Lanes::WIDTH`] records of a slice that has at least as many.
+    fn store_records(numbers: [Self; RECORD], to: &mut [Record]);
 }
+
+/// Numbers of a [`Record`].
+pub(crate) const RECORD: usize = 8;
+/// Numbers that lie side by side in memory.
+pub(crate) type Record = [f32; RECORD];
 
 /// f64 lanes: what follows a hit is computed in them, and rounded to f32 where it enters a queue.
 pub(crate) trait Double: Lanes<Scalar = f64> {

@@ -1,6 +1,6 @@
 //! One lane: plain f32 and f64.
 
-use super::{Double, Lanes, Mask, Single};
+use super::{Double, Lanes, Mask, RECORD, Record, Single};
 
 impl Mask for bool {
     #[inline(always)]
@@ -116,6 +116,26 @@ impl Single for f32 {
     #[inline(always)]
     fn ids_half(ids: u32) -> u32 {
         ids >> 1
+    }
+
+    #[inline(always)]
+    fn pack_ids(ids: u32, _: u32, to: &mut [u32]) {
+        to[0] = ids;
+    }
+
+    #[inline(always)]
+    fn bits_as_ids(self) -> u32 {
+        self.to_bits()
+    }
+
+    #[inline(always)]
+    fn store_records(numbers: [Self; RECORD], to: &mut [Record]) {
+        to[0] = numbers;
+    }
+
+    #[inline(always)]
+    fn transposed<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; RECORD] {
+        *record(0)
     }
 }
 

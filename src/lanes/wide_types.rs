@@ -1,7 +1,9 @@
 //! Lanes from the crate `wide`, which picks its instructions when it is compiled.
 
+use super::pack::Packed;
+use super::records::Records;
 use super::scalar::{MANTISSA, WHOLE};
-use super::{Double, Lanes, Mask, Single};
+use super::{Double, Lanes, Mask, RECORD, Record, Single};
 use wide::{f32x4, f32x8, f32x16, f64x2, f64x4, f64x8, i32x4, i32x8, i32x16, u64x2, u64x4, u64x8};
 
 /// A lane's number in its place, for masks of the first lanes.
@@ -150,6 +152,26 @@ macro_rules! many_singles {
             #[inline(always)]
             fn ids_half(ids: $ids) -> $ids {
                 (ids >> 1) & <$ids>::splat(i32::MAX)
+            }
+
+            #[inline(always)]
+            fn pack_ids(ids: $ids, bits: u32, to: &mut [u32]) {
+                Packed::pack(ids, bits, to);
+            }
+
+            #[inline(always)]
+            fn bits_as_ids(self) -> $ids {
+                bytemuck::cast(self)
+            }
+
+            #[inline(always)]
+            fn transposed<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; RECORD] {
+                Records::transposed(record)
+            }
+
+            #[inline(always)]
+            fn store_records(numbers: [Self; RECORD], to: &mut [Record]) {
+                Records::store(numbers, to);
             }
         }
     };

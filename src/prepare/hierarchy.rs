@@ -3,6 +3,7 @@
 use super::Scale;
 use super::blocks::{BLOCK, PolygonFace, SphereBlock, TriangleBlock, touch_distance};
 use super::bvh::{self, Bounds, Child, Costs, Item, Kind, Leaf, Node, Unpacked};
+use crate::lanes::prefetch;
 use crate::scene::{Geometry, Scene, polygon_normal};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -107,6 +108,25 @@ impl Hierarchy {
                 Some(Place::Polygons((run >> COUNT_BITS) as usize, count as usize))
             }
         }
+    }
+
+    /// Asks for the memory of what a slot leads to, without a branch on what that is.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, child: Child) {
+        let bases = [
+            self.nodes.as_ptr().cast::<u8>(),
+            self.spheres.as_ptr().cast(),
+            self.triangles.as_ptr().cast(),
+            self.polygons.as_ptr().cast(),
+        ];
+        const SIZES: [usize; 4] = [
+            size_of::<Node>(),
+            size_of::<SphereBlock>(),
+            size_of::<TriangleBlock>(),
+            size_of::<PolygonFace>() >> COUNT_BITS,
+        ];
+        let (kind, index) = child.parts();
+        prefetch::<4>(bases[kind].wrapping_add(SIZES[kind] * index));
     }
 
     #[inline(always)]

@@ -51,6 +51,7 @@ impl Writer<'_> {
             let bounds = self.bounds(run);
             self.tree.nodes[index].set(slot, bounds, child);
         }
+        self.tree.nodes[index].set_orders();
         Child::inner(word(index))
     }
 

@@ -12,7 +12,7 @@ pub(crate) const WIDTH: usize = 8;
 /// | 0–95 | `low`: x, y, z of eight children each |
 /// | 96–191 | `high`: likewise |
 /// | 192–223 | `children` |
-/// | 224–255 | `reserved`: 0 |
+/// | 224–255 | `orders`: for rays of each octant of directions, the slots from near to far |
 ///
 /// Children come first, in the order of their leaves; what is left over has the box from +∞ to −∞, which no ray meets,
 /// and [`Child::EMPTY`].
@@ -22,7 +22,7 @@ pub(crate) struct Node {
     pub low: [[f32; WIDTH]; 3],
     pub high: [[f32; WIDTH]; 3],
     pub children: [Child; WIDTH],
-    pub reserved: [u32; 8],
+    pub orders: [Order; 8],
 }
 
 const _: () = assert!(size_of::<Node>() == 256 && align_of::<Node>() == 64);
@@ -32,7 +32,7 @@ impl Node {
         low: [[f32::INFINITY; WIDTH]; 3],
         high: [[f32::NEG_INFINITY; WIDTH]; 3],
         children: [Child::EMPTY; WIDTH],
-        reserved: [0; 8],
+        orders: [Order(0); 8],
     };
 
     pub(super) fn set(&mut self, slot: usize, bounds: Bounds, child: Child) {
@@ -43,9 +43,51 @@ impl Node {
         self.children[slot] = child;
     }
 
+    /// Says in which order rays meet the children, once all are set.
+    pub(super) fn set_orders(&mut self) {
+        let used = self.children.iter().filter(|&&child| child != Child::EMPTY).count();
+        for (octant, order) in self.orders.iter_mut().enumerate() {
+            let along = |slot: &usize| {
+                let sides = [0, 1, 2].map(|axis| {
+                    let middle = 0.5 * self.low[axis][*slot] + 0.5 * self.high[axis][*slot];
+                    if octant >> axis & 1 == 1 { -middle } else { middle }
+                });
+                sides[0] + sides[1] + sides[2]
+            };
+            let mut slots = [0, 1, 2, 3, 4, 5, 6, 7];
+            slots[..used].sort_by(|one, other| along(one).total_cmp(&along(other)));
+            *order = Order::new(&slots[..used]);
+        }
+    }
+
     pub(crate) fn bounds(&self, slot: usize) -> Bounds {
         let corner = |planes: &[[f32; WIDTH]; 3]| glam::Vec3::from(planes.map(|plane| plane[slot]));
         Bounds { low: corner(&self.low), high: corner(&self.high) }
+    }
+}
+
+/// Slots of a node that lead somewhere, in an order: each in 3 bits, the first lowest; how many there are in the 4 high bits.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Order(u32);
+
+impl Order {
+    fn new(slots: &[usize]) -> Self {
+        let word = |number: usize| super::word(number);
+        let list = slots.iter().rev().fold(0, |list, &slot| list << 3 | word(slot));
+        Self(word(slots.len()) << 28 | list)
+    }
+
+    /// How many slots there are.
+    #[inline(always)]
+    pub(crate) fn count(self) -> usize {
+        (self.0 >> 28) as usize
+    }
+
+    /// The slot of a rank.
+    #[inline(always)]
+    pub(crate) fn slot(self, rank: usize) -> usize {
+        (self.0 >> (3 * rank) & 7) as usize
     }
 }
 
@@ -83,6 +125,12 @@ impl Child {
     pub(crate) fn leaf(kind: Kind, index: u32) -> Self {
         debug_assert!(index < Self::LIMIT);
         Self((kind as u32 + 1) << Self::INDEX_BITS | index)
+    }
+
+    /// The two high bits, which say what it leads to, and the index.
+    #[inline(always)]
+    pub(crate) fn parts(self) -> (usize, usize) {
+        ((self.0 >> Self::INDEX_BITS) as usize, (self.0 & Self::INDEX) as usize)
     }
 
     pub(crate) fn unpack(self) -> Unpacked {
@@ -129,7 +177,7 @@ mod tests {
             offset_of!(Node, low),
             offset_of!(Node, high),
             offset_of!(Node, children),
-            offset_of!(Node, reserved),
+            offset_of!(Node, orders),
         ];
         assert_eq!(offsets, [0, 96, 192, 224]);
     }

@@ -55,7 +55,6 @@ impl Walk<'_> {
         assert_eq!(index, self.nodes, "nodes are not in the order of the walk");
         self.nodes += 1;
         let node = &self.tree.nodes[index as usize];
-        assert_eq!(node.reserved, [0; 8]);
         let used = node.children.iter().filter(|&&child| child != Child::EMPTY).count();
         assert!(used >= 2 || self.items.len() == 1, "{used} children");
         let (mut all, mut depth) = (Bounds::EMPTY, 0);
