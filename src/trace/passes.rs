@@ -6,8 +6,9 @@ use crate::lanes::{self, Single, Width};
 use crate::prepare::Prepared;
 use crate::rays::RaySet;
 use crate::reference::Tracer;
-use crate::traverse::{self, Counts, Ends, RUN};
+use crate::traverse::{self, Counts, Ends, RUN, Walker};
 use rayon::prelude::*;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 /// Rays to be traced by the wavefront engine's kernels.
@@ -17,6 +18,8 @@ pub struct Run<'a> {
     query: Query,
     ends: EndColumns,
     counts: Counts,
+    /// Those that no thread uses, for the next pass.
+    walkers: Mutex<Vec<Walker>>,
 }
 
 impl<'a> Run<'a> {
@@ -30,15 +33,16 @@ impl<'a> Run<'a> {
             query,
             ends: EndColumns { t: vec![0.0; columns.filled()], id: vec![0; ids] },
             counts: Counts::default(),
+            walkers: Mutex::default(),
         }
     }
 
     /// Traces all rays once, on the threads of a pool, and returns wall-clock seconds: from rays in columns to hits in
     /// columns, both in the scene's scale.
     pub fn pass(&mut self, width: Width, pool: &rayon::ThreadPool) -> f64 {
-        let Self { prepared, columns, query, ends, counts } = self;
+        let Self { prepared, columns, query, ends, counts, walkers } = self;
         let start = Instant::now();
-        *counts = pool.install(|| width.run(Pass { prepared, columns, query: *query, ends }));
+        *counts = pool.install(|| width.run(Pass { prepared, columns, query: *query, ends, walkers }));
         start.elapsed().as_secs_f64()
     }
 
@@ -48,7 +52,7 @@ impl<'a> Run<'a> {
         &self.ends.t
     }
 
-    /// How many rays of the last pass walked in packets; the others walked alone.
+    /// How many rays of the last pass walked in packets; the others walked in streams.
     #[must_use]
     pub fn in_packets(&self) -> u64 {
         self.counts.in_packets
@@ -108,46 +112,53 @@ fn reference_hit(tracer: &Tracer<'_>, rays: &RaySet, row: usize, query: Query) -
     }
 }
 
-/// Rays that a thread traces before it looks for more: enough to make up for starting, little enough to share.
-const CHUNK: usize = 128 * RUN;
-
 /// One pass over all rays.
 struct Pass<'a> {
     prepared: &'a Prepared<'a>,
     columns: &'a RayColumns,
     query: Query,
     ends: &'a mut EndColumns,
+    walkers: &'a Mutex<Vec<Walker>>,
 }
 
 impl lanes::Job for Pass<'_> {
     type Output = Counts;
 
     fn run<F: Single>(self) -> Counts {
-        let Self { prepared, columns, query, ends } = self;
-        let chunk = |index: usize, ends: &mut Ends<'_>| {
-            let rows = index * CHUNK..index * CHUNK + ends.t.len();
+        let Self { prepared, columns, query, ends, walkers } = self;
+        let batch =
+            traverse::batch(columns.rays(&(0..columns.filled())).origin, rayon::current_num_threads());
+        let trace = |index: usize, ends: &mut Ends<'_>| {
+            let rows = index * batch..index * batch + ends.t.len();
             let rays = columns.rays(&rows);
             columns.begin(&rows, ends);
             let mut counts = Counts::default();
+            let mut walker = lock(walkers).pop().unwrap_or_else(Walker::new);
             match query {
-                Query::Closest => traverse::closest::<F>(&prepared.hierarchy, &rays, ends, &mut counts),
-                Query::Any => traverse::occluded::<F>(&prepared.hierarchy, &rays, ends, &mut counts),
+                Query::Closest => walker.closest::<F>(&prepared.hierarchy, &rays, ends, &mut counts),
+                Query::Any => walker.occluded::<F>(&prepared.hierarchy, &rays, ends, &mut counts),
             }
+            lock(walkers).push(walker);
             counts
         };
         let sum = |mut a: Counts, b: Counts| {
             a += b;
             a
         };
-        let ts = ends.t.par_chunks_mut(CHUNK).enumerate();
+        let ts = ends.t.par_chunks_mut(batch).enumerate();
         match query {
             Query::Closest => ts
-                .zip(ends.id.par_chunks_mut(CHUNK))
-                .map(|((index, t), id)| chunk(index, &mut Ends { t, id }))
+                .zip(ends.id.par_chunks_mut(batch))
+                .map(|((index, t), id)| trace(index, &mut Ends { t, id }))
                 .reduce(Counts::default, sum),
             Query::Any => {
-                ts.map(|(index, t)| chunk(index, &mut Ends { t, id: &mut [] })).reduce(Counts::default, sum)
+                ts.map(|(index, t)| trace(index, &mut Ends { t, id: &mut [] })).reduce(Counts::default, sum)
             }
         }
     }
+}
+
+/// Whatever a thread that panicked left there is as good as new.
+fn lock(walkers: &Mutex<Vec<Walker>>) -> MutexGuard<'_, Vec<Walker>> {
+    walkers.lock().unwrap_or_else(PoisonError::into_inner)
 }

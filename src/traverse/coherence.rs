@@ -4,8 +4,8 @@ use crate::kernel::axes_from;
 use crate::lanes::{Lanes, Mask, Single};
 
 /// Rays that walk together agree in the signs of their directions and in the axis along which they are fastest, and their
-/// slopes against that axis lie within this of each other. Beyond it a packet visits so many nodes for the sake of a few
-/// rays that single rays are sooner done.
+/// slopes against that axis lie within this of each other. Where they are wider a packet visits many nodes for the sake of a few
+/// rays. With the limit at 0.03 to 0.5 speeds were the same within the noise, on five scenes, 2026-11.
 pub(super) const WIDEST_SLOPES: f32 = 0.5;
 
 /// The order of axes and the signs of the directions, if all have the same; of columns as long as whole lanes.

@@ -110,6 +110,18 @@ pub(super) struct Nearest {
 }
 
 impl Nearest {
+    /// Hits are wanted before this t.
+    #[inline(always)]
+    pub(super) fn before(t: f32) -> Self {
+        Self { t, error: 0.0, spot: Spot::NOTHING }
+    }
+
+    /// Nothing beyond this t can be nearer.
+    #[inline(always)]
+    pub(super) fn end(&self) -> f32 {
+        self.t + self.error
+    }
+
     /// Whether a hit takes its place; if ANY, whether it is before the end. In f64 where f32 cannot tell.
     #[inline(always)]
     pub(super) fn yields_to<const ANY: bool>(

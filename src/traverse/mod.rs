@@ -3,19 +3,26 @@
 //! - `candidate`: what counts as a hit of a primitive, for one pair of ray and primitive in each lane
 //! - `exact`: which of two hits is the nearer, where f32 cannot tell
 //! - `in_plane`: faces whose plane a ray starts in, for `exact`
-//! - `single`: one ray at a time, its lanes across the children of a node and the primitives of a block
-//! - `packet`: 64 rays at a time, their lanes across rays
+//! - `packet`: 64 rays at a time that are much alike, their lanes across rays
+//! - `stream`: up to 1024 rays that go roughly the same way; at each node a list says who of them meets it
+//! - `single`: one ray, its lanes across the children of a node and the primitives of a block; what few rays of a stream are
+//!   left to
+//! - `leaf`: what is in a leaf against rays in lanes, for packets and streams
+//! - `coherence`, `regroup`: which rays are alike, and how others are put together
 //!
-//! Both do the same arithmetic at the primitive, box tests never exclude a hit, and which of two hits is seen does not
-//! depend on which is found first, so it does not show who walked. [`closest`] and [`occluded`] choose for each run of 64 rays.
+//! All do the same arithmetic at the primitive, box tests never exclude a hit, and which of two hits is seen does not
+//! depend on which is found first, so it does not show who walked. A [`Walker`] chooses for each run of 64 rays.
 
 mod candidate;
 mod coherence;
 mod counts;
 mod exact;
 mod in_plane;
+mod leaf;
 mod packet;
+mod regroup;
 mod single;
+mod stream;
 #[cfg(test)]
 mod tests;
 
@@ -25,6 +32,8 @@ pub(crate) use single::{Ray as SingleRay, leaves};
 use crate::lanes::Single;
 use crate::prepare::Hierarchy;
 use packet::{PACKET, Packet};
+use regroup::{Incoming, WINDOW};
+use stream::Stream;
 
 /// Rays in columns, in runs of [`RUN`]: where the last run is not full, rows that cannot hit fill it, with t < 0.
 pub(crate) struct Rays<'a> {
@@ -60,66 +69,129 @@ pub(crate) const NOTHING: u32 = u32::MAX;
 /// t of a row that cannot hit, and of a ray that is known to be occluded.
 pub(crate) const DEAD: f32 = -1.0;
 
-/// The closest hit of each ray.
-pub(crate) fn closest<F: Single>(
-    hierarchy: &Hierarchy,
-    rays: &Rays<'_>,
-    ends: &mut Ends<'_>,
-    counts: &mut Counts,
-) {
-    if rays.departure.is_empty() {
-        walk::<F, false, false>(hierarchy, rays, ends, counts);
-    } else {
-        walk::<F, true, false>(hierarchy, rays, ends, counts);
-    }
+/// Runs that are left to streams after a packet that was dear, before one is tried again: one run, and each time that one is
+/// dear again twice as many, up to this.
+const RUNS_WITHOUT: usize = 16;
+
+/// Calls of kernels for each ray of a packet above which it is dear: rays so close to each other meet so many boxes and
+/// primitives for which few of them are there that streams are faster. On five scenes of 7000 to 2 million primitives, with
+/// primary and with shadow rays, packets were faster up to 2.5 calls a ray, equal at 3.8, and slower beyond, by up to 1.7
+/// times at 14; 2026-11.
+const DEAR_CALLS: u64 = 4;
+
+/// Finds what rays hit. Its memory is used again for every batch.
+pub(crate) struct Walker {
+    packet: Box<Packet>,
+    packet_stack: Box<packet::Stack>,
+    incoming: Incoming,
+    stream: Stream,
 }
 
-/// Whether anything that casts a shadow is in the way of each ray.
-pub(crate) fn occluded<F: Single>(
-    hierarchy: &Hierarchy,
-    rays: &Rays<'_>,
-    ends: &mut Ends<'_>,
-    counts: &mut Counts,
-) {
-    if rays.departure.is_empty() {
-        walk::<F, false, true>(hierarchy, rays, ends, counts);
-    } else {
-        walk::<F, true, true>(hierarchy, rays, ends, counts);
+impl Walker {
+    pub(crate) fn new() -> Self {
+        Self {
+            packet: Box::new(Packet::new()),
+            packet_stack: Box::new(packet::EMPTY_STACK),
+            incoming: Incoming::default(),
+            stream: Stream::new(),
+        }
     }
-}
 
-fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
-    hierarchy: &Hierarchy,
-    rays: &Rays<'_>,
-    ends: &mut Ends<'_>,
-    counts: &mut Counts,
-) {
-    if hierarchy.nodes.is_empty() {
-        return;
-    }
-    let mut packet = Packet::new();
-    // Made once: to clear one for each ray took a fifth of the time of primary rays, 2026-11.
-    let (mut packet_stack, mut single_stack) = (packet::EMPTY_STACK, single::EMPTY_STACK);
-    for first in (0..rays.count).step_by(RUN) {
-        let count = (rays.count - first).min(RUN);
-        if packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
-            packet.walk::<F, DEPARTING, ANY>(hierarchy, &mut packet_stack, counts);
-            packet.scatter::<ANY>(ends, first);
+    /// The closest hit of each ray.
+    pub(crate) fn closest<F: Single>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
+        if rays.departure.is_empty() {
+            self.walk::<F, false, false>(hierarchy, rays, ends, counts);
         } else {
-            for row in first..first + count {
-                let ray = single::Ray::new(hierarchy, rays, row);
-                let (t, id) = single::walk::<F, DEPARTING, ANY>(
-                    hierarchy,
-                    &ray,
-                    ends.t[row],
-                    &mut single_stack,
-                    counts,
-                );
-                ends.t[row] = t;
-                if !ANY {
-                    ends.id[row] = id;
+            self.walk::<F, true, false>(hierarchy, rays, ends, counts);
+        }
+    }
+
+    /// Whether anything that casts a shadow is in the way of each ray.
+    pub(crate) fn occluded<F: Single>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
+        if rays.departure.is_empty() {
+            self.walk::<F, false, true>(hierarchy, rays, ends, counts);
+        } else {
+            self.walk::<F, true, true>(hierarchy, rays, ends, counts);
+        }
+    }
+
+    fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
+        if hierarchy.nodes.is_empty() {
+            return;
+        }
+        let by_origin = rays.count > WINDOW && !regroup::is_local(rays.origin, rays.count);
+        let (mut runs_without_packets, mut next_runs_without) = (0, 1);
+        self.incoming.clear();
+        self.packet.clear();
+        for first in (0..rays.count).step_by(RUN) {
+            let count = (rays.count - first).min(RUN);
+            let packet = &mut self.packet;
+            if runs_without_packets == 0 && packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
+                let calls = counts.all().calls;
+                packet.walk::<F, DEPARTING, ANY>(hierarchy, &mut self.packet_stack, counts);
+                packet.scatter::<ANY>(ends, first);
+                if counts.all().calls - calls > DEAR_CALLS * RUN as u64 {
+                    runs_without_packets = next_runs_without;
+                    next_runs_without = (2 * next_runs_without).min(RUNS_WITHOUT);
+                } else {
+                    next_runs_without = 1;
                 }
+                continue;
+            }
+            runs_without_packets = runs_without_packets.saturating_sub(1);
+            self.incoming.push_run::<F, DEPARTING>(rays, ends.t, (first, count));
+            if !by_origin && self.incoming.len() >= WINDOW {
+                self.stream::<F, DEPARTING, ANY>(hierarchy, by_origin, ends, counts);
             }
         }
+        self.stream::<F, DEPARTING, ANY>(hierarchy, by_origin, ends, counts);
+    }
+
+    /// Traces those that packets left.
+    fn stream<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        by_origin: bool,
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
+        let Self { incoming, stream, .. } = self;
+        if by_origin {
+            incoming.sort_by_origin();
+        }
+        incoming.each_part(|incoming, places, class| {
+            stream.trace::<F, DEPARTING, ANY>(hierarchy, incoming, (places, class), ends, counts);
+        });
+        incoming.clear();
+    }
+}
+
+/// How many rays of many to give to a walker at a time: little enough to share among threads, but all that there are of rays
+/// in no order, since the more of them the more likely there are some that go the same way.
+pub(crate) fn batch(origin: [&[f32]; 3], threads: usize) -> usize {
+    const MOST: usize = 1 << 20;
+    let count = origin[0].len();
+    if regroup::is_local(origin, count) {
+        WINDOW
+    } else {
+        count.div_ceil(threads).clamp(WINDOW, MOST).next_multiple_of(RUN)
     }
 }

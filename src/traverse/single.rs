@@ -2,7 +2,7 @@
 
 use super::candidate::{self, Candidate, Start, View};
 use super::exact::{self, Nearest, Spot};
-use super::{Counts, DEAD, Rays};
+use super::{Counts, Rays};
 use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
@@ -13,27 +13,45 @@ use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// What the tests need of a ray.
 pub(crate) struct Ray {
-    origin: [f32; 3],
-    origin_low: [f32; 3],
-    direction: [f32; 3],
+    pub(super) origin: [f32; 3],
+    pub(super) origin_low: [f32; 3],
+    pub(super) direction: [f32; 3],
     /// Whether the direction's component is negative.
-    backwards: [bool; 3],
-    near_origin: [f32; 3],
-    far_origin: [f32; 3],
-    inverse: [f32; 3],
+    pub(super) backwards: [bool; 3],
+    pub(super) near_origin: [f32; 3],
+    pub(super) far_origin: [f32; 3],
+    pub(super) inverse: [f32; 3],
     /// Order of axes in ray space.
-    axes: [usize; 3],
-    shear: [f32; 2],
-    t_per_z: f32,
+    pub(super) axes: [usize; 3],
+    pub(super) shear: [f32; 2],
+    pub(super) t_per_z: f32,
     /// d·d.
-    a: f32,
+    pub(super) a: f32,
     /// By how much boxes are grown.
-    padding: f32,
-    t_min: f32,
-    departure: u32,
+    pub(super) padding: f32,
+    pub(super) t_min: f32,
+    pub(super) departure: u32,
 }
 
 impl Ray {
+    /// None.
+    pub(super) const NONE: Self = Self {
+        origin: [0.0; 3],
+        origin_low: [0.0; 3],
+        direction: [0.0; 3],
+        backwards: [false; 3],
+        near_origin: [0.0; 3],
+        far_origin: [0.0; 3],
+        inverse: [0.0; 3],
+        axes: [0, 1, 2],
+        shear: [0.0; 2],
+        t_per_z: 0.0,
+        a: 0.0,
+        padding: 0.0,
+        t_min: 0.0,
+        departure: super::NOWHERE,
+    };
+
     #[inline(always)]
     pub(crate) fn new(hierarchy: &Hierarchy, rays: &Rays<'_>, row: usize) -> Self {
         let origin = rays.origin.map(|column| column[row]);
@@ -102,7 +120,7 @@ impl Ray {
         self.axes
     }
 
-    fn exact(&self) -> exact::Line {
+    pub(super) fn exact(&self) -> exact::Line {
         exact::Line::new([self.origin, self.origin_low, self.direction], self.departure, self.t_min)
     }
 
@@ -122,6 +140,13 @@ struct Target<'a> {
     nearest: Nearest,
     /// Nothing beyond this can be nearer: t + error.
     end: f32,
+}
+
+impl<'a> Target<'a> {
+    #[inline(always)]
+    fn new(hierarchy: &'a Hierarchy, ray: &'a Ray, nearest: Nearest) -> Self {
+        Self { hierarchy, ray, nearest, end: nearest.end() }
+    }
 }
 
 impl Target<'_> {
@@ -178,45 +203,17 @@ impl Target<'_> {
 pub(super) type Stack = [(Child, f32); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
 pub(super) const EMPTY_STACK: Stack = [(Child::EMPTY, 0.0); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
 
-/// The nearest hit at `t_min` < t < `t_max`: t and id. If ANY, whether there is one that casts a shadow: then t is [`DEAD`].
-pub(super) fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
+/// Tests what is in a leaf: likewise.
+#[inline(always)]
+pub(super) fn visit_leaf<F: Single, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     ray: &Ray,
-    t_max: f32,
-    stack: &mut Stack,
+    (leaf, nearest): (Place, Nearest),
     counts: &mut Counts,
-) -> (f32, u32) {
-    let nearest = Nearest { t: t_max, error: 0.0, spot: Spot::NOTHING };
-    let mut target = Target { hierarchy, ray, nearest, end: t_max };
-    let slabs: Slabs<F::Node> = ray.slabs();
-    stack[0] = (Child::inner(0), 0.0);
-    let mut waiting = 1;
-    while waiting > 0 {
-        waiting -= 1;
-        let (child, enters) = stack[waiting];
-        if enters > target.end {
-            continue;
-        }
-        let Some(place) = Hierarchy::place(child) else { continue };
-        match place {
-            Place::Node(index) => {
-                let node = &hierarchy.nodes[index];
-                waiting = push_children::<F>(node, ray, &slabs, target.end, stack, waiting, counts);
-                continue;
-            }
-            Place::Triangles(block) => target.test_triangles::<F::Block, DEPARTING, ANY>(block, counts),
-            Place::Spheres(block) => target.test_spheres::<F::Block, DEPARTING, ANY>(block, counts),
-            Place::Polygons(first, count) => {
-                for index in first..first + count {
-                    target.test_polygon::<F::Node, DEPARTING, ANY>(index, counts);
-                }
-            }
-        }
-        if ANY && target.nearest.spot != Spot::NOTHING {
-            return (DEAD, super::NOTHING);
-        }
-    }
-    (target.nearest.t, target.nearest.spot.id(hierarchy))
+) -> Nearest {
+    let mut target = Target::new(hierarchy, ray, nearest);
+    target.visit_leaf::<F, DEPARTING, ANY>(leaf, counts);
+    target.nearest
 }
 
 /// Visits the leaves that a ray enters before `end`, the nearer first.
@@ -241,17 +238,15 @@ pub(crate) fn leaves(hierarchy: &Hierarchy, ray: &Ray, end: f32, mut visit: impl
     }
 }
 
-/// Puts the children that the ray meets on the stack, the nearest on top.
+/// Where a ray enters the children of a node, and those that it meets before `t_max`, as bits.
 #[inline(always)]
-fn push_children<F: Single>(
+pub(super) fn enter_children<F: Single>(
     node: &Node,
     ray: &Ray,
     slabs: &Slabs<F::Node>,
     t_max: f32,
-    stack: &mut Stack,
-    waiting: usize,
     counts: &mut Counts,
-) -> usize {
+) -> ([f32; WIDTH], u32) {
     let mut enters = [0.0; WIDTH];
     let mut bits = 0;
     let (zero, t_max) = (F::Node::splat(0.0), F::Node::splat(t_max));
@@ -267,6 +262,21 @@ fn push_children<F: Single>(
         bits |= meets.bits() << slot;
         counts.boxes.add(F::Node::WIDTH, F::Node::WIDTH);
     }
+    (enters, bits)
+}
+
+/// Puts the children that the ray meets on the stack, the nearest on top.
+#[inline(always)]
+fn push_children<F: Single>(
+    node: &Node,
+    ray: &Ray,
+    slabs: &Slabs<F::Node>,
+    t_max: f32,
+    stack: &mut Stack,
+    waiting: usize,
+    counts: &mut Counts,
+) -> usize {
+    let (enters, mut bits) = enter_children::<F>(node, ray, slabs, t_max, counts);
     let bottom = waiting;
     let mut waiting = waiting;
     while bits != 0 {
@@ -286,6 +296,24 @@ fn push_children<F: Single>(
 }
 
 impl Target<'_> {
+    #[inline(always)]
+    fn visit_leaf<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        leaf: Place,
+        counts: &mut Counts,
+    ) {
+        match leaf {
+            Place::Node(_) => {}
+            Place::Triangles(block) => self.test_triangles::<F::Block, DEPARTING, ANY>(block, counts),
+            Place::Spheres(block) => self.test_spheres::<F::Block, DEPARTING, ANY>(block, counts),
+            Place::Polygons(first, count) => {
+                for index in first..first + count {
+                    self.test_polygon::<F::Node, DEPARTING, ANY>(index, counts);
+                }
+            }
+        }
+    }
+
     #[inline(always)]
     fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,

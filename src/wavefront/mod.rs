@@ -5,11 +5,11 @@
 //! | stage | from | to |
 //! |---|---|---|
 //! | `generate` | samples | rays |
-//! | intersect (`traverse::closest`) | rays | hits |
+//! | intersect (`traverse::Walker::closest`) | rays | hits |
 //! | `surface` | rays, hits | surfaces; what misses sees the background |
 //! | `absorb` | surfaces | attenuations |
 //! | `illuminate` | surfaces, a light | shadow rays; once they are traced, local light |
-//! | occlude (`traverse::occluded`) | shadow rays | which of them are occluded |
+//! | occlude (`traverse::Walker::occluded`) | shadow rays | which of them are occluded |
 //! | `spawn` | surfaces | reflected and refracted rays, one level deeper |
 //! | `resolve` | local light, what the children see | what the rays see |
 //!

@@ -17,7 +17,7 @@ use crate::lanes::{Double, Single};
 use crate::prepare::Prepared;
 use crate::ray_tree::RayTree;
 use crate::rays::RecordedRays;
-use crate::traverse::{self, DEAD, Ends, NOTHING, Rays};
+use crate::traverse::{self, DEAD, Ends, NOTHING, Rays, Walker};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rays of a batch. Their queues, up to 330 bytes a ray at the depth at hand, are meant to stay near a core's second-level
@@ -55,6 +55,7 @@ pub(crate) struct Worker<'a> {
     /// By depth; made when a ray first gets so deep.
     levels: Vec<Level>,
     scratch: Scratch,
+    walker: Walker,
     /// Where rays are to be kept.
     recorder: Option<Recorder>,
     stop: &'a AtomicBool,
@@ -118,6 +119,7 @@ impl<'a> Worker<'a> {
             samples: Vec::with_capacity(batch),
             levels: vec![Level::new(&prepared.plan, 0, batch, keep)],
             scratch: Scratch::new(prepared, batch),
+            walker: Walker::new(),
             recorder: None,
             stop,
             statistics: Statistics::default(),
@@ -201,6 +203,7 @@ impl<'a> Worker<'a> {
 
     fn intersect<F: Single>(&mut self, depth: usize, first: usize, count: usize) {
         let (level, hits) = (&mut self.levels[depth], &mut self.scratch.hits);
+        let walker = &mut self.walker;
         self.statistics.timed(depth, Stage::Intersect, |work| {
             work.rows += count as u64;
             let filled = count.next_multiple_of(traverse::RUN);
@@ -229,7 +232,7 @@ impl<'a> Worker<'a> {
                 count,
             };
             let mut ends = Ends { t: &mut hits.t, id: &mut hits.id };
-            traverse::closest::<F>(&self.prepared.hierarchy, &rays, &mut ends, &mut work.tests);
+            walker.closest::<F>(&self.prepared.hierarchy, &rays, &mut ends, &mut work.tests);
         });
     }
 
@@ -302,7 +305,7 @@ impl<'a> Worker<'a> {
                     count,
                 };
                 let mut ends = Ends { t: &mut shadows.t, id: &mut [] };
-                traverse::occluded::<F>(&prepared.hierarchy, &rays, &mut ends, &mut work.tests);
+                self.walker.occluded::<F>(&prepared.hierarchy, &rays, &mut ends, &mut work.tests);
             });
             self.statistics.timed(depth, Stage::Illuminate, |_| {
                 illuminate::add_light(shadows, &mut level.pending);

@@ -1,15 +1,15 @@
 //! The rays of a packet against what is in a leaf.
 
-use super::super::candidate::{self, Candidate, Start, View};
+use super::super::candidate::Candidate;
 use super::super::exact::{self, Nearest, Spot};
-use super::super::{Counts, DEAD, NOTHING};
+use super::super::leaf::{self, RayLanes};
+use super::super::{Counts, DEAD};
 use super::{Columns, PACKET, Packet};
-use crate::kernel::polygon::Outline;
+use crate::kernel::RaySpace;
 use crate::kernel::sphere::Line;
-use crate::kernel::{RaySpace, unclear_area};
-use crate::lanes::{Mask, Single, Vector};
+use crate::lanes::{Mask, Single};
 use crate::prepare::bvh::Node;
-use crate::prepare::{BLOCK, Hierarchy, Place};
+use crate::prepare::{Hierarchy, Place};
 
 impl Packet {
     /// Tests what is in a leaf, against every group from the given one on whose rays meet its box.
@@ -27,28 +27,9 @@ impl Packet {
         loop {
             let bits = mask.bits();
             if bits != 0 {
-                let row = group as usize * F::WIDTH;
+                let mut rays = Group { packet: self, row: group as usize * F::WIDTH };
                 let used = bits.count_ones() as usize;
-                match leaf {
-                    Place::Triangles(index) => {
-                        self.test_triangles::<F, DEPARTING, ANY>(hierarchy, index, row, (mask, used), counts);
-                    }
-                    Place::Spheres(index) => {
-                        self.test_spheres::<F, DEPARTING, ANY>(hierarchy, index, row, (mask, used), counts);
-                    }
-                    Place::Polygons(first, count) => {
-                        for index in first..first + count {
-                            self.test_polygon::<F, DEPARTING, ANY>(
-                                hierarchy,
-                                index,
-                                row,
-                                (mask, used),
-                                counts,
-                            );
-                        }
-                    }
-                    Place::Node(_) => {}
-                }
+                leaf::visit::<F, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
             }
             group += 1;
             if group as usize * F::WIDTH >= PACKET {
@@ -56,132 +37,6 @@ impl Packet {
             }
             mask = self.group_enters::<F>(node, slot, group, counts);
         }
-    }
-
-    #[inline(always)]
-    fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        hierarchy: &Hierarchy,
-        index: usize,
-        row: usize,
-        (mask, used): (F::Mask, usize),
-        counts: &mut Counts,
-    ) {
-        let block = &hierarchy.triangles[index];
-        let (space, padding) = (self.space::<F, DEPARTING>(row), F::load(&self.padding[row..]));
-        for lane in 0..BLOCK {
-            let id = block.ids[lane];
-            if id == NOTHING {
-                return; // the others are empty too
-            }
-            if ANY && !hierarchy.casts_shadow(id) {
-                continue;
-            }
-            let [x, y, z] = self.axes;
-            let [a, b, c] = &block.vertices;
-            let corner = |of: &[[f32; BLOCK]; 3]| {
-                [F::splat(of[x][lane]), F::splat(of[y][lane]), F::splat(of[z][lane])]
-            };
-            let vertices = [corner(a), corner(b), corner(c)];
-            let start = self.start::<F, DEPARTING>(row, id);
-            let sizes = [F::splat(block.size[lane]), F::splat(block.error_area[lane])];
-            let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
-            counts.triangles.add(F::WIDTH, used);
-            self.offer::<F, DEPARTING, ANY>(
-                hierarchy,
-                row,
-                &candidate,
-                mask,
-                (Spot::triangle(index, lane), id),
-            );
-        }
-    }
-
-    #[inline(always)]
-    fn test_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        hierarchy: &Hierarchy,
-        index: usize,
-        row: usize,
-        (mask, used): (F::Mask, usize),
-        counts: &mut Counts,
-    ) {
-        let block = &hierarchy.spheres[index];
-        let (line, padding) = (self.line::<F, DEPARTING>(row), F::load(&self.padding[row..]));
-        for lane in 0..BLOCK {
-            let id = block.ids[lane];
-            if id == NOTHING {
-                return; // the others are empty too
-            }
-            if ANY && !hierarchy.casts_shadow(id) {
-                continue;
-            }
-            let center = Vector::splat(block.centers.map(|column| column[lane]));
-            let start = self.start::<F, DEPARTING>(row, id);
-            let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
-            let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
-            counts.spheres.add(F::WIDTH, used);
-            self.offer::<F, DEPARTING, ANY>(
-                hierarchy,
-                row,
-                &candidate,
-                mask,
-                (Spot::sphere(index, lane), id),
-            );
-        }
-    }
-
-    #[inline(always)]
-    fn test_polygon<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        hierarchy: &Hierarchy,
-        index: usize,
-        row: usize,
-        (mask, used): (F::Mask, usize),
-        counts: &mut Counts,
-    ) {
-        let face = &hierarchy.polygons[index];
-        if ANY && !hierarchy.casts_shadow(face.id) {
-            return;
-        }
-        let zero = F::splat(0.0);
-        let space = self.space::<F, DEPARTING>(row);
-        let first = face.first_corner as usize;
-        let [x, y, z] = self.axes.map(|axis| &hierarchy.corners[axis][..]);
-        let corner = |index: usize| space.see([F::splat(x[index]), F::splat(y[index]), F::splat(z[index])]);
-        let mut outline = Outline::<F>::new();
-        let mut from = corner(first);
-        let doubt = if DEPARTING {
-            unclear_area(&from, [F::splat(face.size), F::splat(face.longest_edge)])
-        } else {
-            zero
-        };
-        for index in first + 1..=first + face.edges as usize {
-            let to = corner(index);
-            if DEPARTING {
-                outline.add_edge_with_doubt(&from, &to, (doubt, mask), zero);
-            } else {
-                outline.add_edge(&from, &to, zero);
-            }
-            from = to;
-        }
-        counts.polygons.calls += u64::from(face.edges);
-        counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
-        counts.polygons.used += u64::from(face.edges) * used as u64;
-        if !DEPARTING {
-            let (before, beyond) = outline.sides_of(F::load(&self.t_min[row..]), space.t_per_z);
-            outline.unclear = before & beyond;
-        }
-        if !((outline.odd | outline.unclear) & mask).any() {
-            return;
-        }
-        let view =
-            View { space, line: self.line::<F, DEPARTING>(row), padding: F::load(&self.padding[row..]) };
-        let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
-        let start = self.start::<F, DEPARTING>(row, face.id);
-        let candidate =
-            candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
-        self.offer::<F, DEPARTING, ANY>(hierarchy, row, &candidate, mask, (Spot::polygon(index), face.id));
     }
 
     /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See [`exact`] for those
@@ -299,40 +154,66 @@ impl Packet {
             F::store_ids(words, &mut column[row..]);
         }
     }
+}
+
+/// Rays of a packet that lie side by side, from a row on.
+struct Group<'a> {
+    packet: &'a mut Packet,
+    row: usize,
+}
+
+impl<F: Single> RayLanes<F> for Group<'_> {
+    #[inline(always)]
+    fn axes(&self) -> [usize; 3] {
+        self.packet.axes
+    }
 
     #[inline(always)]
-    fn space<F: Single, const DEPARTING: bool>(&self, row: usize) -> RaySpace<F> {
+    fn space<const DEPARTING: bool>(&self) -> RaySpace<F> {
+        let Self { packet, row } = self;
         RaySpace {
-            origin: self.axes.map(|axis| F::load(&self.origin[axis][row..])),
-            origin_low: DEPARTING.then(|| self.axes.map(|axis| F::load(&self.origin_low[axis][row..]))),
-            shear: [F::load(&self.shear[0][row..]), F::load(&self.shear[1][row..])],
-            t_per_z: F::load(&self.t_per_z[row..]),
+            origin: packet.axes.map(|axis| F::load(&packet.origin[axis][*row..])),
+            origin_low: DEPARTING.then(|| packet.axes.map(|axis| F::load(&packet.origin_low[axis][*row..]))),
+            shear: [F::load(&packet.shear[0][*row..]), F::load(&packet.shear[1][*row..])],
+            t_per_z: F::load(&packet.t_per_z[*row..]),
         }
     }
 
     #[inline(always)]
-    fn line<F: Single, const DEPARTING: bool>(&self, row: usize) -> Line<F> {
+    fn line<const DEPARTING: bool>(&self) -> Line<F> {
+        let Self { packet, row } = self;
         Line {
-            origin: self.origin.map_lanes(row),
-            origin_low: DEPARTING.then(|| self.origin_low.map_lanes(row)),
-            direction: self.direction.map_lanes(row),
-            a: F::load(&self.a[row..]),
-            inverse_a: F::load(&self.inverse_a[row..]),
+            origin: packet.origin.map_lanes(*row),
+            origin_low: DEPARTING.then(|| packet.origin_low.map_lanes(*row)),
+            direction: packet.direction.map_lanes(*row),
+            a: F::load(&packet.a[*row..]),
+            inverse_a: F::load(&packet.inverse_a[*row..]),
         }
     }
 
-    /// Which rays of a group start on a primitive, and which go inside what they start on.
     #[inline(always)]
-    fn start<F: Single, const DEPARTING: bool>(&self, row: usize, id: u32) -> Start<F> {
-        if !DEPARTING {
-            let none = F::first(0);
-            return Start { own: none, inward: none, t_min: F::load(&self.t_min[row..]) };
-        }
-        let departure = F::load_ids(&self.departure[row..]);
-        Start {
-            own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)),
-            inward: F::ids_odd(departure),
-            t_min: F::splat(0.0),
-        }
+    fn padding(&self) -> F {
+        F::load(&self.packet.padding[self.row..])
+    }
+
+    #[inline(always)]
+    fn t_min(&self) -> F {
+        F::load(&self.packet.t_min[self.row..])
+    }
+
+    #[inline(always)]
+    fn departure(&self) -> F::Ids {
+        F::load_ids(&self.packet.departure[self.row..])
+    }
+
+    #[inline(always)]
+    fn offer<const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        candidate: &Candidate<F>,
+        mask: F::Mask,
+        at: (Spot, u32),
+    ) {
+        self.packet.offer::<F, DEPARTING, ANY>(hierarchy, self.row, candidate, mask, at);
     }
 }

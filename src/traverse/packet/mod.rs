@@ -116,6 +116,14 @@ impl Packet {
         }
     }
 
+    /// Forgets what the rays before had that those to come may not have.
+    pub(super) fn clear(&mut self) {
+        self.origin_low = [[0.0; PACKET]; 3];
+        self.t_min = [0.0; PACKET];
+        self.departure = [super::NOWHERE; PACKET];
+        self.is_changed = false;
+    }
+
     /// Takes rays in, the run of [`PACKET`] rows from `first`; false if they are too unlike to walk together.
     pub(super) fn gather<F: Single>(
         &mut self,

@@ -6,6 +6,7 @@ mod grazing;
 mod rays;
 mod same_as_all;
 mod scenes;
+mod streams;
 mod touching;
 mod watertight;
 

@@ -7,8 +7,9 @@ use crate::kernel::tests::sight::Sight;
 use crate::kernel::tests::single;
 use crate::lanes::{Job, Single, Width};
 use crate::prepare::{Hierarchy, Prepared};
-use crate::traverse::{self, Counts, DEAD, Ends, NOTHING, RUN, Rays};
+use crate::traverse::{Counts, DEAD, Ends, NOTHING, RUN, Rays, Walker};
 use glam::DVec3;
+use std::cell::RefCell;
 
 /// Rays that agree in the signs and the order of their directions' components: from one point, or side by side.
 pub(super) fn coherent(random: &mut Random, count: usize) -> Vec<Query> {
@@ -79,6 +80,11 @@ pub(super) fn end(random: &mut Random, rays: &mut [Query]) {
     }
 }
 
+thread_local! {
+    /// One for all walks of a test: what one leaves behind must not reach the next, whatever its scene and rays.
+    static WALKER: RefCell<Walker> = RefCell::new(Walker::new());
+}
+
 /// What a walk leaves in the columns, and what it did.
 pub(super) struct Walked {
     pub(super) t: Vec<f32>,
@@ -125,11 +131,13 @@ impl Job for Walk<'_> {
         };
         let mut counts = Counts::default();
         let mut ends = Ends { t: &mut t, id: &mut id };
-        if self.any {
-            traverse::occluded::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
-        } else {
-            traverse::closest::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
-        }
+        WALKER.with_borrow_mut(|walker| {
+            if self.any {
+                walker.occluded::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
+            } else {
+                walker.closest::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
+            }
+        });
         Walked { t, id, counts }
     }
 }

@@ -133,14 +133,15 @@ fn hits_up_to_t_min_do_not_count() {
 
 /// The property above would hold for walks that never make up a packet, or never hit.
 #[test]
-fn coherent_rays_walk_in_packets_and_shuffled_ones_alone() {
+fn coherent_rays_walk_in_packets_and_shuffled_ones_in_streams() {
     let (mut packets, mut coherent_hits, mut shuffled_hits) = (0, 0, 0);
     for seed in 0..40 {
         let random = &mut Random::new(seed);
         let scene = mixed(random, 60, 0.3);
         let prepared = Prepared::new(&scene).unwrap();
         let (in_packets, hits) = assert_same_as_all(&prepared, &coherent(random, 128), false);
-        packets += u64::from(in_packets == 4 * 128);
+        // The second packet of a width is not tried where the first was dear.
+        packets += u64::from(in_packets >= 4 * 64);
         coherent_hits += hits;
         let (in_packets, hits) = assert_same_as_all(&prepared, &shuffled(random, 128), false);
         assert_eq!(in_packets, 0);

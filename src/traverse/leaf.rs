@@ -1,0 +1,181 @@
+//! What is in a leaf against rays in lanes: those of a packet that lie side by side, or those of a stream that a list names.
+
+use super::candidate::{self, Candidate, Start, View};
+use super::exact::Spot;
+use super::{Counts, NOTHING};
+use crate::kernel::polygon::Outline;
+use crate::kernel::sphere::Line;
+use crate::kernel::{RaySpace, unclear_area};
+use crate::lanes::{Mask, Single, Vector};
+use crate::prepare::{BLOCK, Hierarchy, Place};
+
+/// A ray in each lane, and what it has found so far.
+pub(super) trait RayLanes<F: Single> {
+    /// Order of axes in ray space, the same for all.
+    fn axes(&self) -> [usize; 3];
+    fn space<const DEPARTING: bool>(&self) -> RaySpace<F>;
+    fn line<const DEPARTING: bool>(&self) -> Line<F>;
+    /// How far a surface may seem to be from where it is.
+    fn padding(&self) -> F;
+    /// Not asked of rays that start on primitives.
+    fn t_min(&self) -> F;
+    /// Asked of rays that start on primitives alone.
+    fn departure(&self) -> F::Ids;
+    /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See `exact` for those lanes
+    /// in which f32 cannot tell. What stands in lanes that are not of `mask` is nothing.
+    fn offer<const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        candidate: &Candidate<F>,
+        mask: F::Mask,
+        at: (Spot, u32),
+    );
+
+    /// Which rays start on a primitive, and which go inside what they start on.
+    #[inline(always)]
+    fn start<const DEPARTING: bool>(&self, id: u32) -> Start<F> {
+        if !DEPARTING {
+            let none = F::first(0);
+            return Start { own: none, inward: none, t_min: self.t_min() };
+        }
+        let departure = self.departure();
+        Start {
+            own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)),
+            inward: F::ids_odd(departure),
+            t_min: F::splat(0.0),
+        }
+    }
+}
+
+/// Tests what is in a leaf against the lanes of a mask, `used` of them.
+#[inline(always)]
+pub(super) fn visit<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    leaf: Place,
+    rays: &mut R,
+    (mask, used): (F::Mask, usize),
+    counts: &mut Counts,
+) {
+    match leaf {
+        Place::Node(_) => {}
+        Place::Triangles(index) => {
+            triangles::<F, R, DEPARTING, ANY>(hierarchy, index, rays, (mask, used), counts);
+        }
+        Place::Spheres(index) => {
+            spheres::<F, R, DEPARTING, ANY>(hierarchy, index, rays, (mask, used), counts);
+        }
+        Place::Polygons(first, count) => {
+            for index in first..first + count {
+                polygon::<F, R, DEPARTING, ANY>(hierarchy, index, rays, (mask, used), counts);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    index: usize,
+    rays: &mut R,
+    (mask, used): (F::Mask, usize),
+    counts: &mut Counts,
+) {
+    let block = &hierarchy.triangles[index];
+    let (space, padding) = (rays.space::<DEPARTING>(), rays.padding());
+    let [x, y, z] = rays.axes();
+    for lane in 0..BLOCK {
+        let id = block.ids[lane];
+        if id == NOTHING {
+            return; // the others are empty too
+        }
+        if ANY && !hierarchy.casts_shadow(id) {
+            continue;
+        }
+        let [a, b, c] = &block.vertices;
+        let corner =
+            |of: &[[f32; BLOCK]; 3]| [F::splat(of[x][lane]), F::splat(of[y][lane]), F::splat(of[z][lane])];
+        let vertices = [corner(a), corner(b), corner(c)];
+        let start = rays.start::<DEPARTING>(id);
+        let sizes = [F::splat(block.size[lane]), F::splat(block.error_area[lane])];
+        let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
+        counts.triangles.add(F::WIDTH, used);
+        rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::triangle(index, lane), id));
+    }
+}
+
+#[inline(always)]
+fn spheres<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    index: usize,
+    rays: &mut R,
+    (mask, used): (F::Mask, usize),
+    counts: &mut Counts,
+) {
+    let block = &hierarchy.spheres[index];
+    let (line, padding) = (rays.line::<DEPARTING>(), rays.padding());
+    for lane in 0..BLOCK {
+        let id = block.ids[lane];
+        if id == NOTHING {
+            return; // the others are empty too
+        }
+        if ANY && !hierarchy.casts_shadow(id) {
+            continue;
+        }
+        let center = Vector::splat(block.centers.map(|column| column[lane]));
+        let start = rays.start::<DEPARTING>(id);
+        let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
+        let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
+        counts.spheres.add(F::WIDTH, used);
+        rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::sphere(index, lane), id));
+    }
+}
+
+#[inline(always)]
+fn polygon<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    index: usize,
+    rays: &mut R,
+    (mask, used): (F::Mask, usize),
+    counts: &mut Counts,
+) {
+    let face = &hierarchy.polygons[index];
+    if ANY && !hierarchy.casts_shadow(face.id) {
+        return;
+    }
+    let zero = F::splat(0.0);
+    let space = rays.space::<DEPARTING>();
+    let first = face.first_corner as usize;
+    let [x, y, z] = rays.axes().map(|axis| &hierarchy.corners[axis][..]);
+    let corner = |index: usize| space.see([F::splat(x[index]), F::splat(y[index]), F::splat(z[index])]);
+    let mut outline = Outline::<F>::new();
+    let mut from = corner(first);
+    let doubt = if DEPARTING {
+        unclear_area(&from, [F::splat(face.size), F::splat(face.longest_edge)])
+    } else {
+        zero
+    };
+    for index in first + 1..=first + face.edges as usize {
+        let to = corner(index);
+        if DEPARTING {
+            outline.add_edge_with_doubt(&from, &to, (doubt, mask), zero);
+        } else {
+            outline.add_edge(&from, &to, zero);
+        }
+        from = to;
+    }
+    counts.polygons.calls += u64::from(face.edges);
+    counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
+    counts.polygons.used += u64::from(face.edges) * used as u64;
+    if !DEPARTING {
+        let (before, beyond) = outline.sides_of(rays.t_min(), space.t_per_z);
+        outline.unclear = before & beyond;
+    }
+    if !((outline.odd | outline.unclear) & mask).any() {
+        return;
+    }
+    let view = View { space, line: rays.line::<DEPARTING>(), padding: rays.padding() };
+    let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
+    let start = rays.start::<DEPARTING>(face.id);
+    let candidate = candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
+    rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::polygon(index), face.id));
+}

@@ -1,0 +1,160 @@
+//! Rays that have left the others: several at a time, a step of each in turn.
+//!
+//! A ray alone waits for memory at every step, and for the outcome of one test before it knows the next. While one waits the
+//! others go on: what a step will read is asked for a round before.
+
+use super::super::Counts;
+use super::super::single::{self, Ray};
+use super::rays::StreamRays;
+use crate::lanes::Single;
+use crate::prepare::bvh::{Child, DEPTH_LIMIT, WIDTH};
+use crate::prepare::{Hierarchy, Place};
+
+/// Enough for the deepest tree, and a child that may be written although the ray does not meet it.
+const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
+
+/// Rays in turn: as many as it takes for memory to answer within a round.
+const SLOTS: usize = 16;
+
+pub(super) struct Loners {
+    slots: Box<[Slot]>,
+    /// Slots, those that are in use first.
+    order: [u8; SLOTS],
+    in_use: usize,
+    /// Rays and where they are to go.
+    queue: Vec<(u32, Child)>,
+    /// Those before it have begun.
+    begun: usize,
+}
+
+struct Slot {
+    ray: Ray,
+    octant: usize,
+    number: u32,
+    waiting: usize,
+    stack: [(Child, f32); STACK],
+}
+
+impl Loners {
+    pub(super) fn new() -> Self {
+        let slot =
+            || Slot { ray: Ray::NONE, octant: 0, number: 0, waiting: 0, stack: [(Child::EMPTY, 0.0); STACK] };
+        let mut order = [0; SLOTS];
+        for (place, slot) in (0..).zip(&mut order) {
+            *slot = place;
+        }
+        Self { slots: (0..SLOTS).map(|_| slot()).collect(), order, in_use: 0, queue: Vec::new(), begun: 0 }
+    }
+
+    /// Sends a ray to what a slot of a node leads to.
+    #[inline(always)]
+    pub(super) fn push(&mut self, hierarchy: &Hierarchy, number: u32, child: Child) {
+        hierarchy.prefetch(child);
+        self.queue.push((number, child));
+    }
+
+    /// Whether as many wait as it pays to go on with.
+    #[inline(always)]
+    pub(super) fn is_full(&self) -> bool {
+        self.queue.len() >= SLOTS
+    }
+
+    /// Goes on as long as all slots are in use; to the end if nobody else will come.
+    pub(super) fn run<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &mut StreamRays,
+        is_last: bool,
+        counts: &mut Counts,
+    ) {
+        loop {
+            while self.in_use < SLOTS && self.begun < self.queue.len() {
+                let slot = self.order[self.in_use];
+                self.begin(slot, rays);
+                self.in_use += 1;
+            }
+            if self.in_use == 0 || (self.in_use < SLOTS && !is_last) {
+                self.queue.clear();
+                self.begun = 0;
+                return;
+            }
+            let mut place = 0;
+            while place < self.in_use {
+                let slot = self.order[place];
+                let goes_on = self.slots[slot as usize].step::<F, DEPARTING, ANY>(hierarchy, rays, counts);
+                if goes_on {
+                    place += 1;
+                } else if self.begun < self.queue.len() {
+                    self.begin(slot, rays);
+                    place += 1;
+                } else {
+                    self.in_use -= 1;
+                    self.order.swap(place, self.in_use);
+                }
+            }
+        }
+    }
+
+    fn begin(&mut self, slot: u8, rays: &StreamRays) {
+        let (number, child) = self.queue[self.begun];
+        self.begun += 1;
+        let slot = &mut self.slots[slot as usize];
+        rays.write_ray(number as usize, &mut slot.ray);
+        slot.octant = rays.class.octant();
+        slot.number = number;
+        slot.stack[0] = (child, 0.0);
+        slot.waiting = 1;
+    }
+}
+
+impl Slot {
+    /// Visits a node or a leaf; false once there is none left.
+    #[inline(always)]
+    fn step<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &mut StreamRays,
+        counts: &mut Counts,
+    ) -> bool {
+        let number = self.number as usize;
+        let nearest = rays.nearest[number];
+        if rays.is_done::<ANY>(number) {
+            return false;
+        }
+        let end = nearest.end();
+        let child = loop {
+            if self.waiting == 0 {
+                return false;
+            }
+            self.waiting -= 1;
+            let (child, enters) = self.stack[self.waiting];
+            if enters <= end {
+                break child;
+            }
+        };
+        match Hierarchy::place(child) {
+            None => {}
+            Some(Place::Node(index)) => {
+                let node = &hierarchy.nodes[index];
+                let slabs = self.ray.slabs();
+                let (enters, bits) = single::enter_children::<F>(node, &self.ray, &slabs, end, counts);
+                // In the order that nodes hold for each octant, without a branch: to sort by where the ray enters is guesswork.
+                let order = node.orders[self.octant];
+                for rank in (0..order.count()).rev() {
+                    let slot = order.slot(rank);
+                    self.stack[self.waiting] = (node.children[slot], enters[slot]);
+                    self.waiting += (bits >> slot & 1) as usize;
+                }
+            }
+            Some(leaf) => {
+                let found = (leaf, nearest);
+                let nearest = single::visit_leaf::<F, DEPARTING, ANY>(hierarchy, &self.ray, found, counts);
+                rays.keep::<ANY>(number, nearest);
+            }
+        }
+        if self.waiting > 0 {
+            hierarchy.prefetch(self.stack[self.waiting - 1].0);
+        }
+        self.waiting > 0
+    }
+}

@@ -1,0 +1,234 @@
+//! Many rays that go the same way but are too unlike for a packet: at each node a list says which of them meet it, and the
+//! lanes are rays of the list. No step waits for the one before, as those of a single ray do.
+//!
+//! - `rays`: what the tests need of each ray
+//! - `leaf`: the rays of a list against what is in a leaf
+//!
+//! This file makes the lists and walks.
+//!
+//! Sources: Barringer and Akenine-Möller, "Dynamic Ray Stream Traversal", 2014 (lists of rays at nodes); Fuetterling et al.,
+//! "Efficient Ray Tracing Kernels for Modern CPU Architectures", 2015 (rays of one octant, whose order of children is known
+//! before).
+
+mod leaf;
+mod loners;
+mod rays;
+
+use super::regroup::Incoming;
+use super::{Counts, Ends};
+use crate::kernel::bounds;
+use crate::lanes::{Lanes, Mask, Single, Vector};
+use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
+use crate::prepare::{Hierarchy, Place};
+use leaf::Listed;
+use loners::Loners;
+pub(super) use rays::Class;
+use rays::{BoxLanes, StreamRays};
+
+/// Most rays of a stream; a power of two.
+pub(super) const CAPACITY: usize = 1024;
+
+/// Rays of lists no longer than this are tested one at a time, in lanes across boxes and primitives.
+const FEW: usize = 3;
+
+/// Enough for the deepest tree, and a child that may be written although no ray meets it.
+const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
+
+/// Lists begin at multiples of this, and lanes may read and write so far beyond their ends.
+const GAP: usize = 16;
+
+/// Rays of one [`Class`], and who of them meets which nodes.
+pub(super) struct Stream {
+    rays: StreamRays,
+    /// Numbers of rays.
+    lists: Vec<u32>,
+    stack: Box<[Waiting; STACK]>,
+    waiting: usize,
+    loners: Loners,
+}
+
+/// A child that waits with the rays that meet it: a part of the lists.
+#[derive(Clone, Copy)]
+struct Waiting {
+    node: u32,
+    slot: u32,
+    first: u32,
+    count: u32,
+}
+
+impl Stream {
+    pub(super) fn new() -> Self {
+        Self {
+            rays: StreamRays::new(),
+            lists: Vec::new(),
+            stack: Box::new([Waiting { node: 0, slot: 0, first: 0, count: 0 }; STACK]),
+            waiting: 0,
+            loners: Loners::new(),
+        }
+    }
+
+    /// Traces rays of one class, no more than [`CAPACITY`], of these places among those that came.
+    pub(super) fn trace<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        incoming: &Incoming,
+        (places, class): (&[u32], Class),
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
+        let room = (hierarchy.depth as usize + 1) * (WIDTH + 1) * (CAPACITY + 2 * GAP);
+        if self.lists.len() < room {
+            self.lists.resize(room, 0);
+        }
+        for (number, place) in (0..).zip(&mut self.lists[..places.len()]) {
+            *place = number;
+        }
+        self.rays.load::<F::Node, DEPARTING>(hierarchy, incoming, places, class);
+        self.walk::<F, DEPARTING, ANY>(hierarchy, places.len(), counts);
+        for (number, &place) in places.iter().enumerate() {
+            let row = incoming.rows[place as usize] as usize;
+            let (t, id) = self.rays.end::<ANY>(hierarchy, number);
+            ends.t[row] = t;
+            if !ANY {
+                ends.id[row] = id;
+            }
+        }
+    }
+
+    fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        count: usize,
+        counts: &mut Counts,
+    ) {
+        self.waiting = 0;
+        self.visit::<F>(hierarchy, 0, (0, count), counts);
+        while self.waiting > 0 {
+            self.waiting -= 1;
+            let Waiting { node, slot, first, count } = self.stack[self.waiting];
+            let node = &hierarchy.nodes[node as usize];
+            let slot = slot as usize;
+            let (first, count) = (first as usize, count as usize);
+            if count <= FEW {
+                for &number in &self.lists[first..first + count] {
+                    self.loners.push(hierarchy, number, node.children[slot]);
+                }
+                if self.loners.is_full() {
+                    self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, false, counts);
+                }
+                continue;
+            }
+            match Hierarchy::place(node.children[slot]) {
+                None => {}
+                Some(Place::Node(index)) if count > F::Node::WIDTH => {
+                    self.visit::<F>(hierarchy, index, (first, count), counts);
+                }
+                Some(Place::Node(index)) => {
+                    self.visit::<F::Node>(hierarchy, index, (first, count), counts);
+                }
+                Some(leaf) if count > F::Node::WIDTH => {
+                    let of = (leaf, node, slot);
+                    self.visit_leaf::<F, DEPARTING, ANY>(hierarchy, of, (first, count), counts);
+                }
+                Some(leaf) => {
+                    let of = (leaf, node, slot);
+                    self.visit_leaf::<F::Node, DEPARTING, ANY>(hierarchy, of, (first, count), counts);
+                }
+            }
+        }
+        self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, true, counts);
+    }
+
+    /// Puts the children that rays of a list meet on the stack, each with its list, the nearest on top.
+    #[inline(never)]
+    fn visit<L: Single>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        index: usize,
+        (first, count): (usize, usize),
+        counts: &mut Counts,
+    ) {
+        let node = &hierarchy.nodes[index];
+        let class = self.rays.class;
+        let order = node.orders[class.octant()];
+        let children = order.count();
+        // The list of the nearest child, which is walked first, lies last: what it leads to may take all room beyond it.
+        let room = (count + 2 * GAP - 1) & !(GAP - 1);
+        let base = (first + count + 2 * GAP - 1) & !(GAP - 1);
+        let (before, lists) = self.lists.split_at_mut(base);
+        let list = &before[first..];
+        let mut ends = [0; WIDTH];
+        for (rank, end) in ends[..children].iter_mut().enumerate() {
+            *end = (children - 1 - rank) * room;
+        }
+        for place in (0..count).step_by(L::WIDTH) {
+            let numbers = &list[place..];
+            let ids = L::load_ids(numbers);
+            let rays = self.rays.boxes::<L>(numbers);
+            let in_list = L::first(count - place);
+            for (rank, end) in ends[..children].iter_mut().enumerate() {
+                let bits = (meet(&rays, node, order.slot(rank), class) & in_list).bits();
+                L::pack_ids(ids, bits, &mut lists[*end..]);
+                *end += bits.count_ones() as usize;
+            }
+            counts.boxes.calls += children as u64;
+            counts.boxes.lanes += (children * L::WIDTH) as u64;
+            counts.boxes.used += (children * L::WIDTH.min(count - place)) as u64;
+        }
+        let mut waiting = self.waiting;
+        for rank in (0..children).rev() {
+            let start = (children - 1 - rank) * room;
+            let count = ends[rank] - start;
+            // Without a branch: which children are met is anybody's guess.
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "nodes and places of lists are numbered in 32 bits"
+            )]
+            let entry = Waiting {
+                node: index as u32,
+                slot: order.slot(rank) as u32,
+                first: (base + start) as u32,
+                count: count as u32,
+            };
+            self.stack[waiting] = entry;
+            waiting += usize::from(count > 0);
+        }
+        for entry in &self.stack[self.waiting..waiting] {
+            hierarchy.prefetch(node.children[entry.slot as usize]);
+        }
+        self.waiting = waiting;
+    }
+
+    /// Tests what is in a leaf with those rays of a list that, with what they have found by now, still look for hits there.
+    #[inline(never)]
+    fn visit_leaf<L: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        (leaf, node, slot): (Place, &Node, usize),
+        (first, count): (usize, usize),
+        counts: &mut Counts,
+    ) {
+        for place in (0..count).step_by(L::WIDTH) {
+            let numbers = &self.lists[first + place..];
+            let rays = self.rays.boxes::<L>(numbers);
+            let mask = meet(&rays, node, slot, self.rays.class) & L::first(count - place);
+            counts.boxes.add(L::WIDTH, L::WIDTH.min(count - place));
+            if mask.any() {
+                let used = mask.bits().count_ones() as usize;
+                let mut rays = Listed::new(&mut self.rays, numbers, rays);
+                super::leaf::visit::<L, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
+            }
+        }
+    }
+}
+
+/// Which rays meet a child's box.
+#[inline(always)]
+fn meet<L: Single>(rays: &BoxLanes<L>, node: &Node, slot: usize, class: Class) -> L::Mask {
+    let plane = |axis: usize, far: bool| {
+        L::splat(if class.backwards[axis] == far { node.low[axis][slot] } else { node.high[axis][slot] })
+    };
+    let near = Vector::new(plane(0, false), plane(1, false), plane(2, false));
+    let far = Vector::new(plane(0, true), plane(1, true), plane(2, true));
+    bounds::enter(&rays.slabs, near, far, L::splat(0.0), rays.end).1
+}

@@ -1,0 +1,208 @@
+//! The rays of a stream, as records: what is needed together lies together.
+
+use super::super::exact::{self, Nearest, Spot};
+use super::super::regroup::Incoming;
+use super::super::single::Ray;
+use super::super::{DEAD, NOTHING, NOWHERE};
+use super::CAPACITY;
+use crate::kernel::axes_from;
+use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
+use crate::lanes::{RECORD, Record, Single, Vector};
+use crate::prepare::Hierarchy;
+
+/// What the directions of all rays of a stream have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::traverse) struct Class {
+    /// The axis along which they are fastest.
+    pub(in crate::traverse) third: usize,
+    /// Whether their components are negative.
+    pub(in crate::traverse) backwards: [bool; 3],
+}
+
+impl Class {
+    /// Bit i is set if the direction is negative along axis i.
+    pub(super) fn octant(self) -> usize {
+        (0..3).map(|axis| usize::from(self.backwards[axis]) << axis).sum()
+    }
+}
+
+type Records = Box<[Record; CAPACITY]>;
+
+pub(super) struct StreamRays {
+    pub(super) class: Class,
+    /// | number | |
+    /// |---|---|
+    /// | 0–2 | origin |
+    /// | 3 | by how much boxes are grown |
+    /// | 4–6 | 1 / direction, all of it finite |
+    /// | 7 | nothing beyond this t can be nearer |
+    slabs: Records,
+    /// | number | |
+    /// |---|---|
+    /// | 0–1 | shear |
+    /// | 2 | t for each unit along the fastest axis |
+    /// | 3 | hits are wanted beyond this t |
+    /// | 4–6 | what the origin's rounding left out |
+    /// | 7 | the bits of the departure |
+    faces: Records,
+    /// | number | |
+    /// |---|---|
+    /// | 0–2 | direction d |
+    /// | 3–4 | a = d·d and 1/a |
+    lines: Records,
+    /// The nearest hit so far, or where hits end to be of interest.
+    pub(super) nearest: Vec<Nearest>,
+}
+
+const END: usize = 7;
+const T_PER_Z: usize = 2;
+const T_MIN: usize = 3;
+const LOW: usize = 4;
+const DEPARTURE: usize = 7;
+
+impl StreamRays {
+    pub(super) fn new() -> Self {
+        let records = || Box::new([[0.0; RECORD]; CAPACITY]);
+        Self {
+            class: Class { third: 2, backwards: [false; 3] },
+            slabs: records(),
+            faces: records(),
+            lines: records(),
+            nearest: Vec::with_capacity(CAPACITY),
+        }
+    }
+
+    /// Takes rays in, of these places among those that came.
+    pub(super) fn load<L: Single, const DEPARTING: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        incoming: &Incoming,
+        places: &[u32],
+        class: Class,
+    ) {
+        self.class = class;
+        let [x_axis, y_axis, third] = axes_from(class.third);
+        let zero = L::splat(0.0);
+        let one = L::splat(1.0);
+        for first in (0..places.len()).step_by(L::WIDTH) {
+            let place = |lane: usize| places[(first + lane).min(places.len() - 1)] as usize;
+            let [x, y, z, end, dx, dy, dz, t_min] = L::transposed(|lane| &incoming.rays[place(lane)]);
+            let direction = [dx, dy, dz];
+            let t_per_z = one / direction[third];
+            let least = direction[third].abs() * L::splat(LEAST_COMPONENT);
+            let inverse = |axis: usize| {
+                let size = direction[axis].abs().max(least);
+                one / if class.backwards[axis] { -size } else { size }
+            };
+            let farthest = x.abs().max(y.abs()).max(z.abs());
+            let padding = (L::splat(hierarchy.extent) + farthest) * L::splat(PADDING);
+            let slabs = [x, y, z, padding, inverse(0), inverse(1), inverse(2), end];
+            L::store_records(slabs, &mut self.slabs[first..]);
+            let shear = [direction[x_axis] * t_per_z, direction[y_axis] * t_per_z];
+            let [low_x, low_y, low_z, departure] = if DEPARTING {
+                let [x, y, z, departure, ..] = L::transposed(|lane| &incoming.departures[place(lane)]);
+                [x, y, z, departure]
+            } else {
+                [zero, zero, zero, L::splat(f32::from_bits(NOWHERE))]
+            };
+            let faces = [shear[0], shear[1], t_per_z, t_min, low_x, low_y, low_z, departure];
+            L::store_records(faces, &mut self.faces[first..]);
+            let a = dx * dx + dy * dy + dz * dz;
+            L::store_records([dx, dy, dz, a, one / a, zero, zero, zero], &mut self.lines[first..]);
+        }
+        self.nearest.clear();
+        self.nearest.extend(self.slabs[..places.len()].iter().map(|slab| Nearest::before(slab[END])));
+    }
+
+    /// What slab tests need of the rays of these numbers: as many as there are lanes.
+    #[inline(always)]
+    pub(super) fn boxes<L: Single>(&self, numbers: &[u32]) -> BoxLanes<L> {
+        let numbers = &numbers[..L::WIDTH];
+        let [x, y, z, padding, a, b, c, end] =
+            L::transposed(|lane| &self.slabs[numbers[lane] as usize % CAPACITY]);
+        let padded = |axis: usize| if self.class.backwards[axis] { -padding } else { padding };
+        let (dx, dy, dz) = (padded(0), padded(1), padded(2));
+        BoxLanes {
+            origin: Vector::new(x, y, z),
+            padding,
+            slabs: Slabs {
+                near_origin: Vector::new(x + dx, y + dy, z + dz),
+                far_origin: Vector::new(x - dx, y - dy, z - dz),
+                inverse: Vector::new(a, b, c),
+            },
+            end,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn faces<L: Single>(&self, numbers: &[u32]) -> [L; RECORD] {
+        let numbers = &numbers[..L::WIDTH];
+        L::transposed(|lane| &self.faces[numbers[lane] as usize % CAPACITY])
+    }
+
+    #[inline(always)]
+    pub(super) fn lines<L: Single>(&self, numbers: &[u32]) -> [L; RECORD] {
+        let numbers = &numbers[..L::WIDTH];
+        L::transposed(|lane| &self.lines[numbers[lane] as usize % CAPACITY])
+    }
+
+    /// Writes down one ray of them. Each field by itself: a ray that is made as a whole is copied by wide loads of what has
+    /// only just been stored, which waits for the stores; that took a sixth of the time of rays alone, 2026-11.
+    #[inline(always)]
+    pub(super) fn write_ray(&self, number: usize, ray: &mut Ray) {
+        let (slab, face, line) = (&self.slabs[number], &self.faces[number], &self.lines[number]);
+        let [x, y, z, padding, a, b, c, _] = *slab;
+        let origin = [x, y, z];
+        for axis in 0..3 {
+            let padded = if self.class.backwards[axis] { -padding } else { padding };
+            ray.near_origin[axis] = origin[axis] + padded;
+            ray.far_origin[axis] = origin[axis] - padded;
+            ray.origin[axis] = origin[axis];
+            ray.origin_low[axis] = face[LOW + axis];
+            ray.direction[axis] = line[axis];
+        }
+        ray.inverse = [a, b, c];
+        ray.backwards = self.class.backwards;
+        ray.axes = axes_from(self.class.third);
+        ray.shear = [face[0], face[1]];
+        ray.t_per_z = face[T_PER_Z];
+        ray.a = line[3];
+        ray.padding = padding;
+        ray.t_min = face[T_MIN];
+        ray.departure = face[DEPARTURE].to_bits();
+    }
+
+    #[cold]
+    pub(super) fn exact(&self, number: usize) -> exact::Line {
+        let mut ray = Ray::NONE;
+        self.write_ray(number, &mut ray);
+        ray.exact()
+    }
+
+    /// Whether there is nothing more to find for a ray.
+    #[inline(always)]
+    pub(super) fn is_done<const ANY: bool>(&self, number: usize) -> bool {
+        ANY && self.nearest[number].spot != Spot::NOTHING
+    }
+
+    /// Keeps what was found for a ray.
+    #[inline(always)]
+    pub(super) fn keep<const ANY: bool>(&mut self, number: usize, nearest: Nearest) {
+        self.nearest[number] = nearest;
+        self.slabs[number][END] = if self.is_done::<ANY>(number) { DEAD } else { nearest.end() };
+    }
+
+    /// t and id as [`super::super::Ends`] has them.
+    pub(super) fn end<const ANY: bool>(&self, hierarchy: &Hierarchy, number: usize) -> (f32, u32) {
+        let nearest = &self.nearest[number];
+        if self.is_done::<ANY>(number) { (DEAD, NOTHING) } else { (nearest.t, nearest.spot.id(hierarchy)) }
+    }
+}
+
+/// What slab tests need of as many rays as there are lanes.
+pub(super) struct BoxLanes<L> {
+    pub(super) origin: Vector<L>,
+    pub(super) padding: L,
+    pub(super) slabs: Slabs<L>,
+    pub(super) end: L,
+}
