@@ -43,20 +43,34 @@ impl Node {
         self.children[slot] = child;
     }
 
-    /// Says in which order rays meet the children, once all are set.
+    /// Says in which order rays meet the children, once all are set: that of their middles along the octant's diagonal, so the
+    /// opposite octant has the reverse.
     pub(super) fn set_orders(&mut self) {
         let used = self.children.iter().filter(|&&child| child != Child::EMPTY).count();
-        for (octant, order) in self.orders.iter_mut().enumerate() {
-            let along = |slot: &usize| {
-                let sides = [0, 1, 2].map(|axis| {
-                    let middle = 0.5 * self.low[axis][*slot] + 0.5 * self.high[axis][*slot];
-                    if octant >> axis & 1 == 1 { -middle } else { middle }
-                });
-                sides[0] + sides[1] + sides[2]
-            };
-            let mut slots = [0, 1, 2, 3, 4, 5, 6, 7];
-            slots[..used].sort_by(|one, other| along(one).total_cmp(&along(other)));
-            *order = Order::new(&slots[..used]);
+        let mut middles = [[0.0; WIDTH]; 3];
+        for (axis, middles) in middles.iter_mut().enumerate() {
+            for (slot, middle) in middles.iter_mut().enumerate().take(used) {
+                *middle = 0.5 * self.low[axis][slot] + 0.5 * self.high[axis][slot];
+            }
+        }
+        let [x, y, z] = &middles;
+        for octant in 0..4 {
+            let sign = |axis: usize| if octant >> axis & 1 == 1 { -1.0 } else { 1.0 };
+            let mut along = [0.0; WIDTH];
+            for slot in 0..WIDTH {
+                along[slot] = sign(0) * x[slot] + sign(1) * y[slot] + z[slot];
+            }
+            let (mut slots, mut reverse) = ([0; WIDTH], [0; WIDTH]);
+            for slot in 0..used {
+                // Of equals the one before is first.
+                let lies_before = |other: usize| {
+                    along[other] < along[slot] || (along[other] == along[slot] && other < slot)
+                };
+                let rank = (0..used).map(|other| usize::from(lies_before(other))).sum::<usize>();
+                (slots[rank], reverse[used - 1 - rank]) = (slot, slot);
+            }
+            self.orders[octant] = Order::new(&slots[..used]);
+            self.orders[7 - octant] = Order::new(&reverse[..used]);
         }
     }
 

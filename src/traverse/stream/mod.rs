@@ -31,6 +31,9 @@ pub(super) const CAPACITY: usize = 1024;
 /// Rays of lists no longer than this are tested one at a time, in lanes across boxes and primitives.
 const FEW: usize = 3;
 
+/// Likewise at polygons: one ray has their edges in lanes, many have one edge at a time.
+const FEW_AT_POLYGONS: usize = 6;
+
 /// Enough for the deepest tree, and a child that may be written although no ray meets it.
 const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
 
@@ -109,7 +112,11 @@ impl Stream {
             let node = &hierarchy.nodes[node as usize];
             let slot = slot as usize;
             let (first, count) = (first as usize, count as usize);
-            if count <= FEW {
+            let few = match Hierarchy::place(node.children[slot]) {
+                Some(Place::Polygons(..)) => FEW_AT_POLYGONS,
+                _ => FEW,
+            };
+            if count <= few {
                 for &number in &self.lists[first..first + count] {
                     self.loners.push(hierarchy, number, node.children[slot]);
                 }
