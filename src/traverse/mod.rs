@@ -73,11 +73,12 @@ pub(crate) const DEAD: f32 = -1.0;
 /// dear again twice as many, up to this.
 const RUNS_WITHOUT: usize = 16;
 
-/// Calls of kernels for each ray of a packet above which it is dear: rays so close to each other meet so many boxes and
-/// primitives for which few of them are there that streams are faster. On five scenes of 7000 to 2 million primitives, with
-/// primary and with shadow rays, packets were faster up to 2.5 calls a ray, equal at 3.8, and slower beyond, by up to 1.7
-/// times at 14; 2026-11.
-const DEAR_CALLS: u64 = 4;
+/// Boxes, or groups of eight, that are tested for a packet above which it is dear: its rays are so far apart, or geometry so
+/// fine, that it goes nearly everywhere for the sake of a few rays. Of packets that tested up to 2 for each ray streams were
+/// slower, by up to half (five scenes of 7000 to 2 million primitives, `gears` and `shells` of the SPD; primary and shadow
+/// rays, 2026-11); at 2.1 to 2.7 both were as fast; from 3 on streams were faster, by up to 1.7 times. Tests of primitives do
+/// not tell: those of large polygons, or of spheres that lie in each other, are many for a stream as well.
+const DEAR_BOXES: u64 = 5 * RUN as u64 / 2;
 
 /// Finds what rays hit. Its memory is used again for every batch.
 pub(crate) struct Walker {
@@ -145,10 +146,10 @@ impl Walker {
             let count = (rays.count - first).min(RUN);
             let packet = &mut self.packet;
             if runs_without_packets == 0 && packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
-                let calls = counts.all().calls;
+                let boxes = counts.boxes.calls;
                 packet.walk::<F, DEPARTING, ANY>(hierarchy, &mut self.packet_stack, counts);
                 packet.scatter::<ANY>(ends, first);
-                if counts.all().calls - calls > DEAR_CALLS * RUN as u64 {
+                if counts.boxes.calls - boxes > DEAR_BOXES {
                     runs_without_packets = next_runs_without;
                     next_runs_without = (2 * next_runs_without).min(RUNS_WITHOUT);
                 } else {
