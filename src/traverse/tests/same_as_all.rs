@@ -7,7 +7,7 @@ use super::scenes::mixed;
 use crate::kernel::tests::sight::Sight;
 use crate::prepare::{Hierarchy, Prepared};
 use crate::scene::{Geometry, MaterialId, Scene};
-use crate::traverse::NOTHING;
+use crate::traverse::{NOTHING, NOWHERE};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
@@ -181,6 +181,28 @@ fn runs_of_different_kinds_follow_each_other() {
         assert_same_as_all(&prepared, &rays, false);
         depart(random, &scene, &prepared.hierarchy, &mut rays, false);
         assert_same_as_all(&prepared, &rays, true);
+    }
+}
+
+/// Of two spheres in one place the first is seen, from the eye as well after rays that started on it: for these one of its roots
+/// is no hit.
+#[test]
+fn rays_from_the_eye_forget_where_those_before_them_started() {
+    let mut geometry = Geometry::default();
+    for _ in 0..2 {
+        geometry.add_sphere(Vec3::new(0.0, 0.0, -3.0), 1.0, MaterialId(0)).unwrap();
+    }
+    let scene = Scene { geometry, ..mixed(&mut Random::new(1), 1, 0.0) };
+    let prepared = Prepared::new(&scene).unwrap();
+    let toward =
+        |row: u32| DVec3::new(f64::from(row % 8) / 40.0 + 0.01, f64::from(row / 8) / 40.0 + 0.01, -1.0);
+    let mut rays: Vec<Query> = (0..64).map(|row| Query::new(Sight::new(DVec3::ZERO, toward(row)))).collect();
+    for departs in [true, false] {
+        for ray in &mut rays {
+            ray.departure = if departs { 0 } else { NOWHERE };
+        }
+        let (in_packets, hits) = assert_same_as_all(&prepared, &rays, departs);
+        assert!(in_packets > 0 && hits > 0, "{in_packets} in packets, {hits} hits");
     }
 }
 
