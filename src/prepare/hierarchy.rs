@@ -113,17 +113,18 @@ impl Hierarchy {
     /// Asks for the memory of what a slot leads to, without a branch on what that is.
     #[inline(always)]
     pub(crate) fn prefetch(&self, child: Child) {
-        let bases = [
-            self.nodes.as_ptr().cast::<u8>(),
-            self.spheres.as_ptr().cast(),
-            self.triangles.as_ptr().cast(),
-            self.polygons.as_ptr().cast(),
-        ];
+        // The word of polygons has their count below the index of the first: a fraction of a face too far does no harm.
         const SIZES: [usize; 4] = [
             size_of::<Node>(),
             size_of::<SphereBlock>(),
             size_of::<TriangleBlock>(),
             size_of::<PolygonFace>() >> COUNT_BITS,
+        ];
+        let bases = [
+            self.nodes.as_ptr().cast::<u8>(),
+            self.spheres.as_ptr().cast(),
+            self.triangles.as_ptr().cast(),
+            self.polygons.as_ptr().cast(),
         ];
         let (kind, index) = child.parts();
         prefetch::<4>(bases[kind].wrapping_add(SIZES[kind] * index));

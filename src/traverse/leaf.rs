@@ -72,6 +72,13 @@ pub(super) fn visit<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY:
     }
 }
 
+/// The primitives of a block that a query asks about, with their lanes; those that are there come first.
+#[inline(always)]
+fn asked<const ANY: bool>(hierarchy: &Hierarchy, ids: &[u32; BLOCK]) -> impl Iterator<Item = (usize, u32)> {
+    let there = ids.iter().copied().enumerate().take_while(|&(_, id)| id != NOTHING);
+    there.filter(move |&(_, id)| !ANY || hierarchy.casts_shadow(id))
+}
+
 #[inline(always)]
 fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
@@ -83,14 +90,7 @@ fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     let block = &hierarchy.triangles[index];
     let (space, padding) = (rays.space::<DEPARTING>(), rays.padding());
     let [x, y, z] = rays.axes();
-    for lane in 0..BLOCK {
-        let id = block.ids[lane];
-        if id == NOTHING {
-            return; // the others are empty too
-        }
-        if ANY && !hierarchy.casts_shadow(id) {
-            continue;
-        }
+    for (lane, id) in asked::<ANY>(hierarchy, &block.ids) {
         let [a, b, c] = &block.vertices;
         let corner =
             |of: &[[f32; BLOCK]; 3]| [F::splat(of[x][lane]), F::splat(of[y][lane]), F::splat(of[z][lane])];
@@ -113,14 +113,7 @@ fn spheres<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
 ) {
     let block = &hierarchy.spheres[index];
     let (line, padding) = (rays.line::<DEPARTING>(), rays.padding());
-    for lane in 0..BLOCK {
-        let id = block.ids[lane];
-        if id == NOTHING {
-            return; // the others are empty too
-        }
-        if ANY && !hierarchy.casts_shadow(id) {
-            continue;
-        }
+    for (lane, id) in asked::<ANY>(hierarchy, &block.ids) {
         let center = Vector::splat(block.centers.map(|column| column[lane]));
         let start = rays.start::<DEPARTING>(id);
         let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];

@@ -8,12 +8,15 @@
 //! - `single`: one ray, its lanes across the children of a node and the primitives of a block; what few rays of a stream are
 //!   left to
 //! - `leaf`: what is in a leaf against rays in lanes, for packets and streams
+//! - `child`: the box of a child against rays in lanes, likewise
+//! - `terms`: what the tests need of a ray beside origin and direction, for streams and rays alone
 //! - `coherence`, `regroup`: which rays are alike, and how others are put together
 //!
 //! All do the same arithmetic at the primitive, box tests never exclude a hit, and which of two hits is seen does not
 //! depend on which is found first, so it does not show who walked. A [`Walker`] chooses for each run of 64 rays.
 
 mod candidate;
+mod child;
 mod coherence;
 mod counts;
 mod exact;
@@ -23,6 +26,7 @@ mod packet;
 mod regroup;
 mod single;
 mod stream;
+mod terms;
 #[cfg(test)]
 mod tests;
 

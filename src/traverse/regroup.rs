@@ -9,8 +9,9 @@ use super::stream::{CAPACITY, Class};
 use super::{RUN, Rays};
 use crate::lanes::{Lanes, RECORD, Record, Single};
 
-/// Rays that are parted by class at a time: as many as stay in the cache, and enough for long lists. Of 4096 to 262,144 rays
-/// 32,768 were fastest, or within 5 %, on five scenes, 2026-11.
+/// Rays that are parted by class at a time: as many as stay in the cache, and enough for long lists. Of 8192, 16,384 and
+/// 32,768 rays in an order the last were fastest on four scenes; 65,536 and 262,144 were slower when rays were also sorted in
+/// each window; 2026-11.
 pub(super) const WINDOW: usize = 512 * RUN;
 
 /// Rays as they come, and the order in which they are to be traced.

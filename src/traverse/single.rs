@@ -2,13 +2,14 @@
 
 use super::candidate::{self, Candidate, Start, View};
 use super::exact::{self, Nearest, Spot};
+use super::terms::Terms;
 use super::{Counts, Rays};
-use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
+use crate::kernel::bounds::{self, Slabs};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
 use crate::kernel::{RaySpace, axes_along, unclear_area};
 use crate::lanes::{Lanes, Mask, Single, Vector};
-use crate::prepare::bvh::{Child, DEPTH_LIMIT, Node, WIDTH};
+use crate::prepare::bvh::{Child, Node, WIDTH};
 use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// What the tests need of a ray.
@@ -56,14 +57,10 @@ impl Ray {
     pub(crate) fn new(hierarchy: &Hierarchy, rays: &Rays<'_>, row: usize) -> Self {
         let origin = rays.origin.map(|column| column[row]);
         let direction = rays.direction.map(|column| column[row]);
-        let sizes = direction.map(f32::abs);
         let axes = axes_along(direction);
-        let third = axes[2];
         let backwards = direction.map(|component| component < 0.0);
-        let t_per_z = 1.0 / direction[third];
-        let least = sizes[third] * LEAST_COMPONENT;
-        let farthest = Lanes::max(Lanes::max(origin[0].abs(), origin[1].abs()), origin[2].abs());
-        let padding = (hierarchy.extent + farthest) * PADDING;
+        let terms = Terms::new(hierarchy.extent, [origin, direction], axes[2], backwards);
+        let Terms { padding, inverse, shear, t_per_z, a } = terms;
         let padded = |axis: usize, padding: f32| {
             if backwards[axis] { origin[axis] - padding } else { origin[axis] + padding }
         };
@@ -74,14 +71,11 @@ impl Ray {
             backwards,
             near_origin: [0, 1, 2].map(|axis| padded(axis, padding)),
             far_origin: [0, 1, 2].map(|axis| padded(axis, -padding)),
-            inverse: [0, 1, 2].map(|axis| {
-                let size = Lanes::max(sizes[axis], least);
-                1.0 / if backwards[axis] { -size } else { size }
-            }),
+            inverse,
             axes,
-            shear: [direction[axes[0]] * t_per_z, direction[axes[1]] * t_per_z],
+            shear,
             t_per_z,
-            a: direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2],
+            a,
             padding,
             t_min: rays.t_min.get(row).copied().unwrap_or(0.0),
             departure: rays.departure.get(row).copied().unwrap_or(super::NOWHERE),
@@ -199,11 +193,8 @@ impl Target<'_> {
     }
 }
 
-/// Children that wait, each with the t at which the ray enters it; enough for the deepest tree.
-pub(super) type Stack = [(Child, f32); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
-pub(super) const EMPTY_STACK: Stack = [(Child::EMPTY, 0.0); DEPTH_LIMIT as usize * (WIDTH - 1) + 1];
-
-/// Tests what is in a leaf: likewise.
+/// Tests what is in a leaf, and returns what is nearest then: a hit beyond `t_min` that is nearer than what is given. If ANY, one
+/// that casts a shadow, before the t that is given.
 #[inline(always)]
 pub(super) fn visit_leaf<F: Single, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
@@ -222,15 +213,15 @@ pub(crate) fn leaves(hierarchy: &Hierarchy, ray: &Ray, end: f32, mut visit: impl
         return;
     }
     let (slabs, mut counts) = (ray.slabs(), Counts::default());
-    let mut stack = EMPTY_STACK;
-    stack[0] = (Child::inner(0), 0.0);
-    let mut waiting = 1;
-    while waiting > 0 {
-        waiting -= 1;
-        match Hierarchy::place(stack[waiting].0) {
+    let mut waiting = vec![Child::inner(0)];
+    while let Some(child) = waiting.pop() {
+        match Hierarchy::place(child) {
             Some(Place::Node(index)) => {
                 let node = &hierarchy.nodes[index];
-                waiting = push_children::<f32>(node, ray, &slabs, end, &mut stack, waiting, &mut counts);
+                let (enters, bits) = enter_children::<f32>(node, ray, &slabs, end, &mut counts);
+                let mut slots: Vec<usize> = (0..WIDTH).filter(|slot| bits >> slot & 1 == 1).collect();
+                slots.sort_by(|&one, &other| enters[other].total_cmp(&enters[one]));
+                waiting.extend(slots.into_iter().map(|slot| node.children[slot]));
             }
             Some(leaf) => visit(leaf),
             None => {}
@@ -263,36 +254,6 @@ pub(super) fn enter_children<F: Single>(
         counts.boxes.add(F::Node::WIDTH, F::Node::WIDTH);
     }
     (enters, bits)
-}
-
-/// Puts the children that the ray meets on the stack, the nearest on top.
-#[inline(always)]
-fn push_children<F: Single>(
-    node: &Node,
-    ray: &Ray,
-    slabs: &Slabs<F::Node>,
-    t_max: f32,
-    stack: &mut Stack,
-    waiting: usize,
-    counts: &mut Counts,
-) -> usize {
-    let (enters, mut bits) = enter_children::<F>(node, ray, slabs, t_max, counts);
-    let bottom = waiting;
-    let mut waiting = waiting;
-    while bits != 0 {
-        let slot = bits.trailing_zeros() as usize;
-        bits &= bits - 1;
-        // Insertion: the farther a child, the deeper it lies.
-        let entry = (node.children[slot], enters[slot]);
-        let mut place = waiting;
-        while place > bottom && stack[place - 1].1 < entry.1 {
-            stack[place] = stack[place - 1];
-            place -= 1;
-        }
-        stack[place] = entry;
-        waiting += 1;
-    }
-    waiting
 }
 
 impl Target<'_> {

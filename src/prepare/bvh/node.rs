@@ -87,9 +87,8 @@ pub(crate) struct Order(u32);
 
 impl Order {
     fn new(slots: &[usize]) -> Self {
-        let word = |number: usize| super::word(number);
-        let list = slots.iter().rev().fold(0, |list, &slot| list << 3 | word(slot));
-        Self(word(slots.len()) << 28 | list)
+        let list = slots.iter().rev().fold(0, |list, &slot| list << 3 | super::word(slot));
+        Self(super::word(slots.len()) << 28 | list)
     }
 
     /// How many slots there are.

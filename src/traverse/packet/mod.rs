@@ -11,8 +11,8 @@ mod leaf;
 
 use super::coherence::{WIDEST_SLOPES, common_order};
 use super::exact::Spot;
-use super::{Counts, DEAD, Ends, Rays};
-use crate::kernel::bounds::{self, LEAST_COMPONENT, PADDING, Slabs};
+use super::{Counts, DEAD, Ends, Rays, child};
+use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
 use crate::lanes::{Lanes, Mask, Single, Vector};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
@@ -357,13 +357,8 @@ impl Packet {
             far_origin: self.far_origin.map_lanes(row),
             inverse: self.inverse.map_lanes(row),
         };
-        let plane = |axis: usize, far: bool| {
-            F::splat(if self.backwards[axis] == far { node.low[axis][slot] } else { node.high[axis][slot] })
-        };
-        let near = Vector::new(plane(0, false), plane(1, false), plane(2, false));
-        let far = Vector::new(plane(0, true), plane(1, true), plane(2, true));
         counts.boxes.add(F::WIDTH, self.count.saturating_sub(row).min(F::WIDTH));
-        bounds::enter(&slabs, near, far, F::splat(0.0), F::load(&self.end[row..])).1
+        child::meet(&slabs, (node, slot), self.backwards, F::load(&self.end[row..]))
     }
 }
 

@@ -5,13 +5,11 @@
 
 use super::super::Counts;
 use super::super::single::{self, Ray};
+use super::STACK;
 use super::rays::StreamRays;
 use crate::lanes::Single;
-use crate::prepare::bvh::{Child, DEPTH_LIMIT, WIDTH};
+use crate::prepare::bvh::Child;
 use crate::prepare::{Hierarchy, Place};
-
-/// Enough for the deepest tree, and a child that may be written although the ray does not meet it.
-const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
 
 /// Rays in turn: as many as it takes for memory to answer within a round.
 const SLOTS: usize = 16;
@@ -29,7 +27,6 @@ pub(super) struct Loners {
 
 struct Slot {
     ray: Ray,
-    octant: usize,
     number: u32,
     waiting: usize,
     stack: [(Child, f32); STACK],
@@ -37,8 +34,7 @@ struct Slot {
 
 impl Loners {
     pub(super) fn new() -> Self {
-        let slot =
-            || Slot { ray: Ray::NONE, octant: 0, number: 0, waiting: 0, stack: [(Child::EMPTY, 0.0); STACK] };
+        let slot = || Slot { ray: Ray::NONE, number: 0, waiting: 0, stack: [(Child::EMPTY, 0.0); STACK] };
         let mut order = [0; SLOTS];
         for (place, slot) in (0..).zip(&mut order) {
             *slot = place;
@@ -100,7 +96,6 @@ impl Loners {
         self.begun += 1;
         let slot = &mut self.slots[slot as usize];
         rays.write_ray(number as usize, &mut slot.ray);
-        slot.octant = rays.class.octant();
         slot.number = number;
         slot.stack[0] = (child, 0.0);
         slot.waiting = 1;
@@ -139,7 +134,7 @@ impl Slot {
                 let slabs = self.ray.slabs();
                 let (enters, bits) = single::enter_children::<F>(node, &self.ray, &slabs, end, counts);
                 // In the order that nodes hold for each octant, without a branch: to sort by where the ray enters is guesswork.
-                let order = node.orders[self.octant];
+                let order = node.orders[rays.class.octant()];
                 for rank in (0..order.count()).rev() {
                     let slot = order.slot(rank);
                     self.stack[self.waiting] = (node.children[slot], enters[slot]);

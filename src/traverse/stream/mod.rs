@@ -3,6 +3,7 @@
 //!
 //! - `rays`: what the tests need of each ray
 //! - `leaf`: the rays of a list against what is in a leaf
+//! - `loners`: rays that have left the others, several at a time
 //!
 //! This file makes the lists and walks.
 //!
@@ -15,26 +16,25 @@ mod loners;
 mod rays;
 
 use super::regroup::Incoming;
-use super::{Counts, Ends};
-use crate::kernel::bounds;
-use crate::lanes::{Lanes, Mask, Single, Vector};
+use super::{Counts, Ends, child};
+use crate::lanes::{Lanes, Mask, Single};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
 use leaf::Listed;
 use loners::Loners;
 pub(super) use rays::Class;
-use rays::{BoxLanes, StreamRays};
+use rays::StreamRays;
 
 /// Most rays of a stream; a power of two.
 pub(super) const CAPACITY: usize = 1024;
 
-/// Rays of lists no longer than this are tested one at a time, in lanes across boxes and primitives.
+/// Rays of lists no longer than this go on alone, in lanes across boxes and primitives.
 const FEW: usize = 3;
 
 /// Likewise at polygons: one ray has their edges in lanes, many have one edge at a time.
 const FEW_AT_POLYGONS: usize = 6;
 
-/// Enough for the deepest tree, and a child that may be written although no ray meets it.
+/// Children that wait: enough for the deepest tree, and one that may be written although no ray meets it.
 const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
 
 /// Lists begin at multiples of this, and lanes may read and write so far beyond their ends.
@@ -110,34 +110,27 @@ impl Stream {
             self.waiting -= 1;
             let Waiting { node, slot, first, count } = self.stack[self.waiting];
             let node = &hierarchy.nodes[node as usize];
-            let slot = slot as usize;
-            let (first, count) = (first as usize, count as usize);
-            let few = match Hierarchy::place(node.children[slot]) {
-                Some(Place::Polygons(..)) => FEW_AT_POLYGONS,
-                _ => FEW,
-            };
-            if count <= few {
-                for &number in &self.lists[first..first + count] {
-                    self.loners.push(hierarchy, number, node.children[slot]);
+            let (slot, first, count) = (slot as usize, first as usize, count as usize);
+            let child = node.children[slot];
+            let Some(place) = Hierarchy::place(child) else { continue };
+            let few = if matches!(place, Place::Polygons(..)) { FEW_AT_POLYGONS } else { FEW };
+            let is_long = count > F::Node::WIDTH;
+            match place {
+                _ if count <= few => {
+                    for &number in &self.lists[first..first + count] {
+                        self.loners.push(hierarchy, number, child);
+                    }
+                    if self.loners.is_full() {
+                        self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, false, counts);
+                    }
                 }
-                if self.loners.is_full() {
-                    self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, false, counts);
-                }
-                continue;
-            }
-            match Hierarchy::place(node.children[slot]) {
-                None => {}
-                Some(Place::Node(index)) if count > F::Node::WIDTH => {
-                    self.visit::<F>(hierarchy, index, (first, count), counts);
-                }
-                Some(Place::Node(index)) => {
-                    self.visit::<F::Node>(hierarchy, index, (first, count), counts);
-                }
-                Some(leaf) if count > F::Node::WIDTH => {
+                Place::Node(index) if is_long => self.visit::<F>(hierarchy, index, (first, count), counts),
+                Place::Node(index) => self.visit::<F::Node>(hierarchy, index, (first, count), counts),
+                leaf if is_long => {
                     let of = (leaf, node, slot);
                     self.visit_leaf::<F, DEPARTING, ANY>(hierarchy, of, (first, count), counts);
                 }
-                Some(leaf) => {
+                leaf => {
                     let of = (leaf, node, slot);
                     self.visit_leaf::<F::Node, DEPARTING, ANY>(hierarchy, of, (first, count), counts);
                 }
@@ -174,7 +167,9 @@ impl Stream {
             let rays = self.rays.boxes::<L>(numbers);
             let in_list = L::first(count - place);
             for (rank, end) in ends[..children].iter_mut().enumerate() {
-                let bits = (meet(&rays, node, order.slot(rank), class) & in_list).bits();
+                let bits = (child::meet(&rays.slabs, (node, order.slot(rank)), class.backwards, rays.end)
+                    & in_list)
+                    .bits();
                 L::pack_ids(ids, bits, &mut lists[*end..]);
                 *end += bits.count_ones() as usize;
             }
@@ -218,7 +213,8 @@ impl Stream {
         for place in (0..count).step_by(L::WIDTH) {
             let numbers = &self.lists[first + place..];
             let rays = self.rays.boxes::<L>(numbers);
-            let mask = meet(&rays, node, slot, self.rays.class) & L::first(count - place);
+            let met = child::meet(&rays.slabs, (node, slot), self.rays.class.backwards, rays.end);
+            let mask = met & L::first(count - place);
             counts.boxes.add(L::WIDTH, L::WIDTH.min(count - place));
             if mask.any() {
                 let used = mask.bits().count_ones() as usize;
@@ -227,15 +223,4 @@ impl Stream {
             }
         }
     }
-}
-
-/// Which rays meet a child's box.
-#[inline(always)]
-fn meet<L: Single>(rays: &BoxLanes<L>, node: &Node, slot: usize, class: Class) -> L::Mask {
-    let plane = |axis: usize, far: bool| {
-        L::splat(if class.backwards[axis] == far { node.low[axis][slot] } else { node.high[axis][slot] })
-    };
-    let near = Vector::new(plane(0, false), plane(1, false), plane(2, false));
-    let far = Vector::new(plane(0, true), plane(1, true), plane(2, true));
-    bounds::enter(&rays.slabs, near, far, L::splat(0.0), rays.end).1
 }

@@ -3,10 +3,11 @@
 use super::super::exact::{self, Nearest, Spot};
 use super::super::regroup::Incoming;
 use super::super::single::Ray;
+use super::super::terms::Terms;
 use super::super::{DEAD, NOTHING, NOWHERE};
 use super::CAPACITY;
 use crate::kernel::axes_from;
-use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
+use crate::kernel::bounds::Slabs;
 use crate::lanes::{RECORD, Record, Single, Vector};
 use crate::prepare::Hierarchy;
 
@@ -81,24 +82,15 @@ impl StreamRays {
         class: Class,
     ) {
         self.class = class;
-        let [x_axis, y_axis, third] = axes_from(class.third);
-        let zero = L::splat(0.0);
-        let one = L::splat(1.0);
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
         for first in (0..places.len()).step_by(L::WIDTH) {
             let place = |lane: usize| places[(first + lane).min(places.len() - 1)] as usize;
             let [x, y, z, end, dx, dy, dz, t_min] = L::transposed(|lane| &incoming.rays[place(lane)]);
-            let direction = [dx, dy, dz];
-            let t_per_z = one / direction[third];
-            let least = direction[third].abs() * L::splat(LEAST_COMPONENT);
-            let inverse = |axis: usize| {
-                let size = direction[axis].abs().max(least);
-                one / if class.backwards[axis] { -size } else { size }
-            };
-            let farthest = x.abs().max(y.abs()).max(z.abs());
-            let padding = (L::splat(hierarchy.extent) + farthest) * L::splat(PADDING);
-            let slabs = [x, y, z, padding, inverse(0), inverse(1), inverse(2), end];
+            let ray = [[x, y, z], [dx, dy, dz]];
+            let terms = Terms::new(hierarchy.extent, ray, class.third, class.backwards);
+            let Terms { padding, inverse, shear, t_per_z, a } = terms;
+            let slabs = [x, y, z, padding, inverse[0], inverse[1], inverse[2], end];
             L::store_records(slabs, &mut self.slabs[first..]);
-            let shear = [direction[x_axis] * t_per_z, direction[y_axis] * t_per_z];
             let [low_x, low_y, low_z, departure] = if DEPARTING {
                 let [x, y, z, departure, ..] = L::transposed(|lane| &incoming.departures[place(lane)]);
                 [x, y, z, departure]
@@ -107,7 +99,6 @@ impl StreamRays {
             };
             let faces = [shear[0], shear[1], t_per_z, t_min, low_x, low_y, low_z, departure];
             L::store_records(faces, &mut self.faces[first..]);
-            let a = dx * dx + dy * dy + dz * dz;
             L::store_records([dx, dy, dz, a, one / a, zero, zero, zero], &mut self.lines[first..]);
         }
         self.nearest.clear();
@@ -146,8 +137,8 @@ impl StreamRays {
         L::transposed(|lane| &self.lines[numbers[lane] as usize % CAPACITY])
     }
 
-    /// Writes down one ray of them. Each field by itself: a ray that is made as a whole is copied by wide loads of what has
-    /// only just been stored, which waits for the stores; that took a sixth of the time of rays alone, 2026-11.
+    /// Writes down one ray of them. Each field by itself: a ray that was made as a whole was copied by wide loads of what had
+    /// only just been stored, where a sixth of the samples of rays alone fell (2026-11). Whole walks became no faster.
     #[inline(always)]
     pub(super) fn write_ray(&self, number: usize, ray: &mut Ray) {
         let (slab, face, line) = (&self.slabs[number], &self.faces[number], &self.lines[number]);
