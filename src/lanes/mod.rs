@@ -19,7 +19,9 @@ mod wide_types;
 mod widths;
 
 pub use isa::Isa;
+pub(crate) use pack::Packing;
 pub(crate) use prefetch::prefetch;
+pub(crate) use records::least_of_each;
 pub(crate) use vector::Vector;
 pub(crate) use widths::Job;
 pub use widths::Width;
@@ -120,6 +122,9 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
     /// Stores the ids of the lanes whose bits are set, one after the other from the start, and anything behind them, of a
     /// slice that has room for all.
     fn pack_ids(ids: Self::Ids, bits: u32, to: &mut [u32]);
+    /// A mask's halves, of lanes that are half as many: what they choose may be less work in such. None where a node's are no
+    /// fewer than these.
+    fn halves(mask: Self::Mask) -> Option<[<Self::Node as Lanes>::Mask; 2]>;
     /// The bits of each lane, which held an id or what else has 32 bits.
     fn bits_as_ids(self) -> Self::Ids;
     /// Turns a record for each lane into lanes for each of its numbers.

@@ -1,6 +1,53 @@
-//! Lanes put side by side that were chosen by a mask, for lists.
+//! Lanes put side by side that were chosen by a mask, for lists and queues.
 
+use bytemuck::Pod;
 use wide::{i32x4, i32x8, i32x16, u32x8};
+
+/// Which of eight numbers side by side are wanted, one after the other. It is found once and serves any number of columns.
+#[derive(Clone, Copy)]
+pub(crate) struct Packing {
+    bits: u32,
+}
+
+impl Packing {
+    /// Numbers at once.
+    pub(crate) const MOST: usize = 8;
+
+    /// Bit i is number i.
+    #[inline(always)]
+    pub(crate) fn new(bits: u32) -> Self {
+        Self { bits: bits & 255 }
+    }
+
+    /// How many are wanted.
+    #[inline(always)]
+    pub(crate) fn count(self) -> usize {
+        self.bits.count_ones() as usize
+    }
+
+    /// Puts those of the first eight that are wanted where `to` begins, and anything behind them where there is room. `from`
+    /// may end behind the last that is wanted, and `to` where these are full.
+    #[inline(always)]
+    pub(crate) fn pack<T: Pod>(self, from: &[T], to: &mut [T]) {
+        const { assert!(size_of::<T>() == 4) };
+        match (from.first_chunk::<8>(), to.first_chunk_mut::<8>()) {
+            (Some(from), Some(to)) if cfg!(target_feature = "avx2") => {
+                let numbers: u32x8 = bytemuck::cast(*from);
+                *to = bytemuck::cast(numbers.shuffle(u32x8::new(CHOSEN[self.bits as usize])));
+            }
+            _ => self.pack_each(from, to),
+        }
+    }
+
+    #[inline(always)]
+    fn pack_each<T: Pod>(self, from: &[T], to: &mut [T]) {
+        let mut bits = self.bits;
+        for to in &mut to[..self.count()] {
+            *to = from[bits.trailing_zeros() as usize];
+            bits &= bits - 1;
+        }
+    }
+}
 
 /// See [`super::Single::pack_ids`].
 pub(super) trait Packed {
@@ -66,6 +113,7 @@ fn pack_each(ids: &[u32], bits: u32, to: &mut [u32]) {
 
 #[cfg(test)]
 mod tests {
+    use super::Packing;
     use crate::lanes::{Job, Single, Width};
 
     struct Packs;
@@ -91,6 +139,26 @@ mod tests {
     fn lanes_of_any_mask_come_one_after_the_other() {
         for width in Width::ALL {
             width.run(Packs);
+        }
+    }
+
+    #[test]
+    fn numbers_of_any_choice_come_one_after_the_other_wherever_columns_end() {
+        let from: Vec<f32> = (0_u8..8).map(|number| f32::from(number) + 0.5).collect();
+        for bits in 0..256_u32 {
+            let packing = Packing::new(bits);
+            let chosen: Vec<f32> =
+                (0..8).filter(|lane| bits >> lane & 1 == 1).map(|lane| from[lane]).collect();
+            let (count, last) = (chosen.len(), 32 - bits.leading_zeros() as usize);
+            assert_eq!(packing.count(), count);
+            for (from, room) in
+                [(&from[..], 9), (&from[..], count), (&from[..last], 8), (&from[..last], count)]
+            {
+                let mut to = vec![7.0; room];
+                packing.pack(from, &mut to);
+                assert_eq!(to[..count], chosen, "{bits:b} into {room}");
+                assert!(to.get(8).is_none_or(|&beyond| beyond == 7.0));
+            }
         }
     }
 }

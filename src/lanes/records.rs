@@ -3,7 +3,7 @@
 //! Numbers that are needed together for a few rays out of many lie together in memory: one load and a part of a
 //! transposition take the place of eight loads from eight columns.
 
-use super::{Lanes, RECORD, Record};
+use super::{Lanes, RECORD, Record, Single};
 use wide::{f32x4, f32x8, f32x16};
 
 /// See [`super::Single::transposed`] and [`super::Single::store_records`].
@@ -85,6 +85,23 @@ impl Records for f32x16 {
         Records::store(halves[0], to);
         Records::store(halves[1], &mut to[8..]);
     }
+}
+
+/// The least of the lanes of each: the same in any order, unlike a sum. All at once, and by halves, since a chain of sixteen
+/// is slow.
+#[inline(always)]
+pub(crate) fn least_of_each<F: Single>(lanes: [F; RECORD]) -> Record {
+    let mut records = [[0.0; RECORD]; 16];
+    F::store_records(lanes, &mut records);
+    for half in [8, 4, 2, 1] {
+        if half < F::WIDTH {
+            let (low, high) = records.split_at_mut(half);
+            for (low, high) in low.as_flattened_mut().iter_mut().zip(high.as_flattened()) {
+                *low = Lanes::min(*high, *low);
+            }
+        }
+    }
+    records[0]
 }
 
 #[cfg(test)]

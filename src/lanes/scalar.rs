@@ -124,6 +124,11 @@ impl Single for f32 {
     }
 
     #[inline(always)]
+    fn halves(_: bool) -> Option<[bool; 2]> {
+        None
+    }
+
+    #[inline(always)]
     fn bits_as_ids(self) -> u32 {
         self.to_bits()
     }

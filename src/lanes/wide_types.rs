@@ -108,7 +108,7 @@ macro_rules! many_lanes {
 }
 
 macro_rules! many_singles {
-    ($lanes:ty, $width:literal, $ids:ty, $double:ty, $block:ty, $node:ty) => {
+    ($lanes:ty, $width:literal, $ids:ty, $double:ty, $block:ty, $node:ty, $halves:expr) => {
         many_lanes!($lanes, f32, $width);
 
         impl Single for $lanes {
@@ -157,6 +157,12 @@ macro_rules! many_singles {
             #[inline(always)]
             fn pack_ids(ids: $ids, bits: u32, to: &mut [u32]) {
                 Packed::pack(ids, bits, to);
+            }
+
+            #[inline(always)]
+            fn halves(mask: Self) -> Option<[$node; 2]> {
+                const HALVES: fn($lanes) -> Option<[$node; 2]> = $halves;
+                HALVES(mask)
             }
 
             #[inline(always)]
@@ -216,9 +222,9 @@ macro_rules! many_doubles {
     };
 }
 
-many_singles!(f32x4, 4, i32x4, f64x2, f32x4, f32x4);
-many_singles!(f32x8, 8, i32x8, f64x4, f32x4, f32x8);
-many_singles!(f32x16, 16, i32x16, f64x8, f32x4, f32x8);
+many_singles!(f32x4, 4, i32x4, f64x2, f32x4, f32x4, |_| None);
+many_singles!(f32x8, 8, i32x8, f64x4, f32x4, f32x8, |_| None);
+many_singles!(f32x16, 16, i32x16, f64x8, f32x4, f32x8, |mask| Some(bytemuck::cast(mask)));
 many_doubles!(f64x2, 2, u64x2);
 many_doubles!(f64x4, 4, u64x4);
 many_doubles!(f64x8, 8, u64x8);

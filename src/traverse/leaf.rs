@@ -1,16 +1,20 @@
 //! What is in a leaf against rays in lanes: those of a packet that lie side by side, or those of a stream that a list names.
 
 use super::candidate::{self, Candidate, Start, View};
+use super::edges::{self, Sight};
 use super::exact::Spot;
 use super::{Counts, NOTHING};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
-use crate::kernel::{RaySpace, unclear_area};
+use crate::kernel::{RaySpace, Seen, unclear_area};
 use crate::lanes::{Mask, Single, Vector};
 use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// A ray in each lane, and what it has found so far.
 pub(super) trait RayLanes<F: Single> {
+    /// Whether the rays go nearly the same way from nearly the same place.
+    const ARE_ALIKE: bool;
+
     /// Order of axes in ray space, the same for all.
     fn axes(&self) -> [usize; 3];
     fn space<const DEPARTING: bool>(&self) -> RaySpace<F>;
@@ -147,18 +151,33 @@ fn polygon<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     } else {
         zero
     };
-    for index in first + 1..=first + face.edges as usize {
-        let to = corner(index);
+    let mut add_edge = |from: &Seen<F>, to: &Seen<F>| {
         if DEPARTING {
-            outline.add_edge_with_doubt(&from, &to, (doubt, mask), zero);
+            outline.add_edge_with_doubt(from, to, (doubt, mask), zero);
         } else {
-            outline.add_edge(&from, &to, zero);
+            outline.add_edge(from, to, zero);
         }
-        from = to;
+        counts.polygons.add(F::WIDTH, used);
+    };
+    // A ray in line with an edge that lies apart is in doubt for no reason, and then f64 gives its t: to leave out that edge
+    // leaves its hit as it is, but perhaps not t.
+    let may_leave_out = ANY || !DEPARTING;
+    if R::ARE_ALIKE && may_leave_out && F::WIDTH > 2 && face.edges >= edges::MANY {
+        let sight = Sight::of(&space, mask);
+        let size = DEPARTING.then_some(face.size);
+        let columns = [&y[first..], &z[first..]];
+        let depths = edges::each_near::<F>(&sight, columns, face.edges as usize, size, |edge| {
+            add_edge(&corner(first + edge), &corner(first + edge + 1));
+        });
+        let depth = |z: f32| space.see([zero, zero, F::splat(z)]).z;
+        [outline.least_z, outline.largest_z] = depths.map(depth);
+    } else {
+        for index in first + 1..=first + face.edges as usize {
+            let to = corner(index);
+            add_edge(&from, &to);
+            from = to;
+        }
     }
-    counts.polygons.calls += u64::from(face.edges);
-    counts.polygons.lanes += u64::from(face.edges) * F::WIDTH as u64;
-    counts.polygons.used += u64::from(face.edges) * used as u64;
     if !DEPARTING {
         let (before, beyond) = outline.sides_of(rays.t_min(), space.t_per_z);
         outline.unclear = before & beyond;

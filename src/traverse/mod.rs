@@ -9,6 +9,7 @@
 //!   left to
 //! - `leaf`: what is in a leaf against rays in lanes, for packets and streams
 //! - `child`: the box of a child against rays in lanes, likewise
+//! - `edges`: which edges of a polygon rays that lie side by side have to do with
 //! - `terms`: what the tests need of a ray beside origin and direction, for streams and rays alone
 //! - `coherence`, `regroup`: which rays are alike, and how others are put together
 //!
@@ -19,6 +20,7 @@ mod candidate;
 mod child;
 mod coherence;
 mod counts;
+mod edges;
 mod exact;
 mod in_plane;
 mod leaf;

@@ -2,25 +2,30 @@
 //! Pictures", 1977); a light at a time, so that one shadow queue does for any number of them.
 
 use super::elementary::pow;
-use super::queue::{NormalQueue, PendingQueue, PendingRecord, ShadowQueue, ShadowRecord, SurfaceQueue};
+use super::materials::columns_of;
+use super::queue::{NormalQueue, PendingQueue, ShadowQueue, SurfaceQueue};
 use super::statistics::Work;
 use super::surface::SurfaceLanes;
-use crate::lanes::{Double, Mask, Vector};
+use crate::lanes::{Double, Mask, Packing, Vector};
 use crate::prepare::Prepared;
 use crate::scene::{Light, Material, Rgb};
 
 /// Makes a pending row of each surface, with ambient light.
 pub(super) fn begin(prepared: &Prepared<'_>, surfaces: &SurfaceQueue, pending: &mut PendingQueue) {
+    let count = surfaces.len();
     pending.clear();
-    let ambient: Vec<[f32; 3]> = prepared
-        .scene
-        .materials
-        .iter()
-        .map(|material| (material.ambient * prepared.scene.ambient).to_array())
-        .collect();
-    for row in 0..surfaces.len() {
-        let light = ambient[surfaces.material[row] as usize];
-        pending.push(PendingRecord { ray: surfaces.ray[row], light });
+    pending.set_len(count);
+    pending.ray[..count].copy_from_slice(&surfaces.ray[..count]);
+    for (channel, light) in pending.light.iter_mut().enumerate() {
+        let ambient: Vec<f32> = prepared
+            .scene
+            .materials
+            .iter()
+            .map(|material| (material.ambient * prepared.scene.ambient)[channel])
+            .collect();
+        for (light, &material) in light[..count].iter_mut().zip(&surfaces.material[..count]) {
+            *light = ambient[material as usize];
+        }
     }
 }
 
@@ -60,40 +65,29 @@ pub(super) fn aim<D: Double>(
         let l = to_light * (one / distance);
         let cos_light = surface.shading_normal.dot(l);
         let is_before = cos_light.gt(zero) & surface.geometric_normal.dot(l).gt(zero);
-        let mut bits = is_before.bits();
-        let mut coefficients = [[0.0; 8]; 7];
-        for lane in 0..D::WIDTH {
-            if lane >= count || bits >> lane & 1 == 0 {
-                bits &= !(1 << lane);
-                continue;
-            }
-            let material = &materials[surfaces.material[first + lane] as usize];
-            if !adds(material) {
-                bits &= !(1 << lane);
-                continue;
-            }
+        let columns = columns_of(&surfaces.material[first..first + count], |of_row| {
+            let material = &materials[of_row];
             let (diffuse, specular) = (material.diffuse, material.specular);
-            let values =
-                [diffuse.x, diffuse.y, diffuse.z, specular.x, specular.y, specular.z, material.shininess];
-            for (column, value) in coefficients.iter_mut().zip(values) {
-                column[lane] = value;
-            }
-        }
+            let adds = f32::from(u8::from(adds(material)));
+            [diffuse.x, diffuse.y, diffuse.z, specular.x, specular.y, specular.z, material.shininess, adds]
+        });
+        let [red, green, blue, specular_red, specular_green, specular_blue, shininess, adds] =
+            columns.map(|column| D::widen(&column));
+        let bits = (is_before & adds.gt(zero)).bits() & ((1 << count) - 1);
+        let has_highlight = !(specular_red.eq(zero) & specular_green.eq(zero) & specular_blue.eq(zero));
         let used = bits.count_ones() as usize;
         work.lanes.add(D::WIDTH, used);
         if used == 0 {
             continue;
         }
-        let [diffuse_r, diffuse_g, diffuse_b, specular_r, specular_g, specular_b, shininess] =
-            coefficients.map(|column| D::widen(&column));
-        let mut added = Vector::new(diffuse_r, diffuse_g, diffuse_b) * cos_light;
-        if prepared.plan.highlights && coefficients[3..6].iter().any(|column| *column != [0.0; 8]) {
+        let mut added = Vector::new(red, green, blue) * cos_light;
+        if prepared.plan.highlights && has_highlight.bits() & bits != 0 {
             let half = (l - surface.direction).normalized(one);
             // Where v = −l there is no half vector, and a maximum with NaN first is 0.
             let cos_half = surface.shading_normal.dot(half).max(zero);
             let highlight = pow(cos_half, shininess);
             powers += used as u64;
-            added = added + Vector::new(specular_r, specular_g, specular_b) * highlight;
+            added = added + Vector::new(specular_red, specular_green, specular_blue) * highlight;
         }
         let added = added.times(Vector::splat(intensity.as_dvec3().to_array()));
         let segment = if light_is_near {
@@ -129,49 +123,48 @@ impl<D: Double> Segment<D> {
     }
 }
 
-/// Pushes the lanes whose bits are set.
+/// Pushes the lanes whose bits are set, from the surface of the first lane on.
+#[inline(always)]
 fn push_rows<D: Double>(
-    mut bits: u32,
+    bits: u32,
     first: usize,
     segment: &Segment<D>,
     light: Vector<D>,
     surfaces: &SurfaceQueue,
     shadows: &mut ShadowQueue,
 ) {
-    let mut rounded = [[0.0; 8]; 7];
-    let Segment { direction, end } = segment;
-    for (lanes, column) in
-        [direction.x, direction.y, direction.z, light.x, light.y, light.z, *end].into_iter().zip(&mut rounded)
-    {
-        lanes.round(column);
+    let packing = Packing::new(bits);
+    let row = shadows.len();
+    shadows.set_len(row + packing.count());
+    for axis in 0..3 {
+        packing.pack(&surfaces.position[axis][first..], &mut shadows.origin[axis][row..]);
+        packing.pack(&surfaces.position_low[axis][first..], &mut shadows.origin_low[axis][row..]);
     }
-    while bits != 0 {
-        let lane = bits.trailing_zeros() as usize;
-        bits &= bits - 1;
-        let row = first + lane;
-        let [dx, dy, dz, r, g, b, t] = rounded.map(|column| column[lane]);
-        #[expect(clippy::cast_possible_truncation, reason = "a batch has some thousand rows")]
-        let surface = row as u32;
-        shadows.push(ShadowRecord {
-            origin: [0, 1, 2].map(|axis| surfaces.position[axis][row]),
-            origin_low: [0, 1, 2].map(|axis| surfaces.position_low[axis][row]),
-            direction: [dx, dy, dz],
-            departure: surfaces.departure[row],
-            t,
-            surface,
-            light: [r, g, b],
-        });
+    packing.pack(&surfaces.departure[first..], &mut shadows.departure[row..]);
+    #[expect(clippy::cast_possible_truncation, reason = "a batch has some thousand rows")]
+    let numbers = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| first as u32 + lane);
+    packing.pack(&numbers, &mut shadows.surface[row..]);
+    let [dx, dy, dz] = &mut shadows.direction;
+    let [red, green, blue] = &mut shadows.light;
+    let Segment { direction, end } = segment;
+    let columns = [dx, dy, dz, red, green, blue, &mut shadows.t];
+    let lanes = [direction.x, direction.y, direction.z, light.x, light.y, light.z, *end];
+    for (lanes, column) in lanes.into_iter().zip(columns) {
+        let mut rounded = [0.0; Packing::MOST];
+        lanes.round(&mut rounded);
+        packing.pack(&rounded, &mut column[row..]);
     }
 }
 
-/// Adds the light of those shadow rays that are not occluded.
+/// Adds the light of those shadow rays that are not occluded. Without a branch, since nobody can guess which these are: to add
+/// 0 changes no light.
 pub(super) fn add_light(shadows: &ShadowQueue, pending: &mut PendingQueue) {
-    for row in 0..shadows.len() {
-        if shadows.t[row] >= 0.0 {
-            let surface = shadows.surface[row] as usize;
-            for channel in 0..3 {
-                pending.light[channel][surface] += shadows.light[channel][row];
-            }
+    let count = shadows.len();
+    let (t, surface) = (&shadows.t[..count], &shadows.surface[..count]);
+    for (light, pending) in shadows.light.iter().zip(&mut pending.light) {
+        let pending = &mut pending[..];
+        for ((&light, &t), &surface) in light[..count].iter().zip(t).zip(surface) {
+            pending[surface as usize] += if t >= 0.0 { light } else { 0.0 };
         }
     }
 }

@@ -24,6 +24,7 @@ mod explain;
 mod generate;
 mod illuminate;
 mod level;
+mod materials;
 mod optics;
 mod outline;
 mod queue;

@@ -10,32 +10,50 @@ use crate::traverse::NOTHING;
 ///
 /// Each sum is over one surface in one order, so it does not depend on which rays were traced together.
 pub(super) fn resolve(level: &mut Level, deeper: Option<&RadianceQueue>, absorbs: bool) {
-    for row in 0..level.pending.len() {
-        let ray = level.pending.ray[row] as usize;
-        let reflected = seen(&level.reflected, deeper, row);
-        let refracted = seen(&level.refracted, deeper, row);
-        for channel in 0..3 {
-            let mut light = level.pending.light[channel][row];
-            for (share, radiance) in [reflected, refracted].into_iter().flatten() {
-                light += share[channel] * radiance[channel];
-            }
+    let count = level.pending.len();
+    let rays = &level.pending.ray[..count];
+    for channel in 0..3 {
+        let reflected = Children::of(&level.reflected, deeper, channel);
+        let refracted = Children::of(&level.refracted, deeper, channel);
+        let local_light = &level.pending.light[channel][..count];
+        let attenuation = if absorbs { &level.attenuations.attenuation[channel][..count] } else { &[] };
+        let radiance = &mut level.radiance.radiance[channel][..];
+        for (row, (&ray, &light)) in rays.iter().zip(local_light).enumerate() {
+            let mut light = refracted.add_to(row, reflected.add_to(row, light));
             if absorbs {
-                light *= level.attenuations.attenuation[channel][row];
+                light *= attenuation[row];
             }
-            level.radiance.radiance[channel][ray] = light;
+            radiance[ray as usize] = light;
         }
     }
 }
 
-/// The share and the radiance of a surface's child, if it has one.
-#[inline(always)]
-fn seen(children: &ChildQueue, deeper: Option<&RadianceQueue>, row: usize) -> Option<([f32; 3], [f32; 3])> {
-    let deeper = deeper.filter(|_| children.len() > 0)?;
-    let child = children.row[row];
-    (child != NOTHING).then(|| {
-        let share = [0, 1, 2].map(|channel| children.share[channel][row]);
-        (share, [0, 1, 2].map(|channel| deeper.radiance[channel][child as usize]))
-    })
+/// What the children of surfaces see, in one channel; empty where there are none.
+struct Children<'a> {
+    rows: &'a [u32],
+    shares: &'a [f32],
+    radiance: &'a [f32],
+}
+
+impl<'a> Children<'a> {
+    fn of(children: &'a ChildQueue, deeper: Option<&'a RadianceQueue>, channel: usize) -> Self {
+        let Some(deeper) = deeper else { return Self { rows: &[], shares: &[], radiance: &[] } };
+        let count = children.len();
+        Self {
+            rows: &children.row[..count],
+            shares: &children.share[channel][..count],
+            radiance: &deeper.radiance[channel],
+        }
+    }
+
+    /// Adds a surface's child's share of what that sees, where it has a child.
+    #[inline(always)]
+    fn add_to(&self, row: usize, light: f32) -> f32 {
+        match self.rows.get(row) {
+            Some(&child) if child != NOTHING => light + self.shares[row] * self.radiance[child as usize],
+            _ => light,
+        }
+    }
 }
 
 /// Adds what primary rays see to their pixels. A pixel's samples come in order, in one batch or in several.

@@ -1,12 +1,13 @@
 //! Reflected and refracted rays of surfaces, for the next level.
 
+use super::column::round_vector;
 use super::level::Level;
+use super::materials::columns_of;
 use super::optics::{Boundary, mirrored};
-use super::queue::{ChildQueue, ChildRecord, NormalQueue, RefractionQueue, RefractionRecord, SurfaceQueue};
-use super::queue::{DepartureRecord, RayRecord};
+use super::queue::{ChildQueue, NormalQueue, RefractionQueue, SurfaceQueue};
 use super::statistics::Work;
 use super::surface::SurfaceLanes;
-use crate::lanes::{Double, Lanes, Mask, Vector};
+use crate::lanes::{Double, Lanes, Mask, Packing, Vector};
 use crate::prepare::Prepared;
 use crate::rays::RayCounts;
 use crate::scene::{Fresnel, Rgb};
@@ -27,10 +28,8 @@ struct Materials<D: Double> {
 
 impl<D: Double> Materials<D> {
     fn gather(prepared: &Prepared<'_>, surfaces: &SurfaceQueue, first: usize, count: usize) -> Self {
-        let mut columns = [[0.0; 8]; 10];
-        for lane in 0..count {
-            let row = first + lane;
-            let material = &prepared.scene.materials[surfaces.material[row] as usize];
+        let values = |of_row: usize| {
+            let material = &prepared.scene.materials[of_row];
             let (transmission, ior, is_dielectric, is_schlick) = match material.dielectric {
                 Some(dielectric) => {
                     let is_schlick = f32::from(u8::from(dielectric.fresnel == Fresnel::Schlick));
@@ -38,17 +37,18 @@ impl<D: Double> Materials<D> {
                 }
                 None => (Rgb::ZERO, 1.0, 0.0, 0.0),
             };
-            let is_entering = f32::from(u8::from(surfaces.departure[row] & 1 == 0));
             let [mirror, transmission] = [material.mirror, transmission].map(|rgb| rgb.to_array());
             let [r, g, b] = mirror;
             let [tr, tg, tb] = transmission;
-            let values = [r, g, b, tr, tg, tb, ior, is_dielectric, is_schlick, is_entering];
-            for (column, value) in columns.iter_mut().zip(values) {
-                column[lane] = value;
-            }
+            [r, g, b, tr, tg, tb, ior, is_dielectric, is_schlick]
+        };
+        let columns = columns_of(&surfaces.material[first..first + count], values);
+        let [r, g, b, tr, tg, tb, ior, is_dielectric, is_schlick] = columns.map(|column| D::widen(&column));
+        let mut entering = [0.0; 8];
+        for (entering, &departure) in entering.iter_mut().zip(&surfaces.departure[first..first + count]) {
+            *entering = f32::from(u8::from(departure & 1 == 0));
         }
-        let [r, g, b, tr, tg, tb, ior, is_dielectric, is_schlick, is_entering] =
-            columns.map(|column| D::widen(&column));
+        let is_entering = D::widen(&entering);
         let zero = D::splat(0.0);
         Self {
             mirror: Vector::new(r, g, b),
@@ -99,7 +99,7 @@ pub(super) fn spawn<D: Double>(
         let materials = Materials::<D>::gather(prepared, queues.surfaces, first, count);
         work.lanes.add(D::WIDTH, count);
         let share = if refracts && materials.is_dielectric.any() {
-            refract(&surface, &materials, prepared.plan.vertex_normals, first, count, queues.refractions)
+            refract(&surface, &materials, prepared.plan.vertex_normals, first, queues.refractions)
         } else {
             if refracts {
                 no_refractions(first, count, queues.refractions);
@@ -107,28 +107,41 @@ pub(super) fn spawn<D: Double>(
             materials.mirror
         };
         let direction = reflected(&surface, prepared.plan.vertex_normals);
-        let mut columns = [[0.0; 8]; 6];
-        for (lanes, column) in
-            [direction.x, direction.y, direction.z, share.x, share.y, share.z].into_iter().zip(&mut columns)
-        {
-            lanes.round(column);
-        }
-        for lane in 0..count {
-            let [dx, dy, dz, r, g, b] = columns.map(|column| column[lane]);
-            let is_pushed =
-                queues.push(prepared, first + lane, Branch::Reflected, [dx, dy, dz], [r, g, b], is_primary);
-            rays.reflect += u64::from(is_pushed);
-        }
+        let children = Children {
+            branch: Branch::Reflected,
+            direction: rounded_columns(direction),
+            share: rounded_columns(share),
+        };
+        rays.reflect += queues.push(prepared, (first, count), &children, is_primary);
     }
     queues.deeper.reflected_rays = queues.deeper.rays.len();
     if refracts {
-        for row in 0..count {
-            let direction = [0, 1, 2].map(|axis| queues.refractions.direction[axis][row]);
-            let share = [0, 1, 2].map(|axis| queues.refractions.share[axis][row]);
-            let is_pushed = queues.push(prepared, row, Branch::Refracted, direction, share, is_primary);
-            rays.refract += u64::from(is_pushed);
+        for first in (0..count).step_by(D::WIDTH) {
+            let lanes = |column: &[f32]| {
+                let mut lanes = [0.0; 8];
+                lanes[..D::WIDTH].copy_from_slice(&column[first..first + D::WIDTH]);
+                lanes
+            };
+            let children = Children {
+                branch: Branch::Refracted,
+                direction: queues.refractions.direction.each_ref().map(|column| lanes(column)),
+                share: queues.refractions.share.each_ref().map(|column| lanes(column)),
+            };
+            let count = (count - first).min(D::WIDTH);
+            rays.refract += queues.push(prepared, (first, count), &children, is_primary);
         }
     }
+}
+
+/// Rounded to f32, for queues.
+#[inline(always)]
+fn rounded_columns<D: Double>(vector: Vector<D>) -> [[f32; 8]; 3] {
+    let mut columns = [[0.0; 8]; 3];
+    let [x, y, z] = &mut columns;
+    vector.x.round(x);
+    vector.y.round(y);
+    vector.z.round(z);
+    columns
 }
 
 /// The mirrored direction; with the true normal where n_s would send it below the true surface.
@@ -149,7 +162,6 @@ fn refract<D: Double>(
     materials: &Materials<D>,
     has_vertex_normals: bool,
     first: usize,
-    count: usize,
     refractions: &mut RefractionQueue,
 ) -> Vector<D> {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
@@ -183,22 +195,14 @@ fn refract<D: Double>(
         refracted_share = Vector::select(!leaves & at_true_normal.is_total, none, refracted_share);
     }
     direction = SurfaceLanes::kept_on_side(direction, one, -surface.geometric_normal);
-    let mut rounded = [[0.0; 8]; 6];
-    let values =
-        [direction.x, direction.y, direction.z, refracted_share.x, refracted_share.y, refracted_share.z];
-    for (lanes, column) in values.into_iter().zip(&mut rounded) {
-        lanes.round(column);
-    }
-    for lane in 0..count {
-        let [dx, dy, dz, r, g, b] = rounded.map(|column| column[lane]);
-        refractions.put(first + lane, RefractionRecord { direction: [dx, dy, dz], share: [r, g, b] });
-    }
+    round_vector(direction, &mut refractions.direction, first);
+    round_vector(refracted_share, &mut refractions.share, first);
     Vector::select(materials.is_dielectric, reflected_share, materials.mirror)
 }
 
 fn no_refractions(first: usize, count: usize, refractions: &mut RefractionQueue) {
-    for row in first..first + count {
-        refractions.put(row, RefractionRecord { direction: [0.0; 3], share: [0.0; 3] });
+    for column in refractions.direction.iter_mut().chain(&mut refractions.share) {
+        column[first..first + count].fill(0.0);
     }
 }
 
@@ -208,45 +212,80 @@ enum Branch {
     Refracted,
 }
 
+/// A child of each surface, in lanes.
+struct Children {
+    branch: Branch,
+    direction: [[f32; 8]; 3],
+    /// Of what they see.
+    share: [[f32; 8]; 3],
+}
+
 impl Spawning<'_> {
-    /// Pushes a child of a surface if its weight makes it worth tracing.
+    /// Pushes those children of `count` surfaces from `first` on whose weight makes them worth tracing; returns how many.
     #[inline(always)]
     fn push(
         &mut self,
         prepared: &Prepared<'_>,
-        row: usize,
-        branch: Branch,
-        direction: [f32; 3],
-        share: [f32; 3],
+        (first, count): (usize, usize),
+        children: &Children,
         is_primary: bool,
-    ) -> bool {
-        let is_reflected = branch == Branch::Reflected;
-        let ray = self.surfaces.ray[row] as usize;
-        let mut weight = share;
-        let mut largest = 0.0;
+    ) -> u64 {
+        let Self { surfaces, level, deeper, .. } = self;
+        let run = first..first + count;
+        let parents = &surfaces.ray[run.clone()];
+        let mut weight = children.share;
         for (channel, weight) in weight.iter_mut().enumerate() {
             if !is_primary {
-                *weight *= self.level.departures.weight[channel][ray];
+                let of_parents = &level.departures.weight[channel][..];
+                for (weight, &parent) in weight.iter_mut().zip(parents) {
+                    *weight *= of_parents[parent as usize];
+                }
             }
             if prepared.plan.absorption {
-                *weight *= self.level.attenuations.attenuation[channel][row];
+                for (weight, share) in
+                    weight.iter_mut().zip(&level.attenuations.attenuation[channel][run.clone()])
+                {
+                    *weight *= share;
+                }
             }
-            largest = Lanes::max(*weight, largest);
         }
-        let is_worth_tracing = largest > 0.0 && largest >= prepared.plan.min_weight;
-        let child = if is_worth_tracing {
-            // Another side, another lowest bit.
-            let departure = self.surfaces.departure[row] ^ u32::from(!is_reflected);
-            let origin = [0, 1, 2].map(|axis| self.surfaces.position[axis][row]);
-            let origin_low = [0, 1, 2].map(|axis| self.surfaces.position_low[axis][row]);
-            self.deeper.departures.push(DepartureRecord { departure, origin_low, weight });
-            self.deeper.rays.push(RayRecord { origin, direction })
-        } else {
-            NOTHING
-        };
-        let children: &mut ChildQueue =
-            if is_reflected { &mut self.level.reflected } else { &mut self.level.refracted };
-        children.put(row, ChildRecord { row: child, share });
-        is_worth_tracing
+        let mut bits = 0;
+        let [red, green, blue] = &weight;
+        for lane in 0..count {
+            let largest = Lanes::max(blue[lane], Lanes::max(green[lane], Lanes::max(red[lane], 0.0)));
+            bits |= u32::from(largest > 0.0 && largest >= prepared.plan.min_weight) << lane;
+        }
+
+        let is_reflected = children.branch == Branch::Reflected;
+        let numbers: &mut ChildQueue = if is_reflected { &mut level.reflected } else { &mut level.refracted };
+        let row = deeper.rays.len();
+        for lane in 0..count {
+            let before = (bits & ((1 << lane) - 1)).count_ones();
+            #[expect(clippy::cast_possible_truncation, reason = "a batch has some thousand rows")]
+            let number = row as u32 + before;
+            numbers.row[first + lane] = if bits >> lane & 1 == 1 { number } else { NOTHING };
+        }
+        for (to, share) in numbers.share.iter_mut().zip(&children.share) {
+            to[run.clone()].copy_from_slice(&share[..count]);
+        }
+
+        let packing = Packing::new(bits);
+        deeper.rays.set_len(row + packing.count());
+        deeper.departures.set_len(row + packing.count());
+        // Another side, another lowest bit.
+        let other_side = u32::from(!is_reflected);
+        let mut departure = [0; Packing::MOST];
+        for (departure, this_side) in departure.iter_mut().zip(&surfaces.departure[run]) {
+            *departure = this_side ^ other_side;
+        }
+        packing.pack(&departure, &mut deeper.departures.departure[row..]);
+        for (axis, weight) in weight.iter().enumerate() {
+            packing.pack(&surfaces.position[axis][first..], &mut deeper.rays.origin[axis][row..]);
+            packing
+                .pack(&surfaces.position_low[axis][first..], &mut deeper.departures.origin_low[axis][row..]);
+            packing.pack(&children.direction[axis], &mut deeper.rays.direction[axis][row..]);
+            packing.pack(weight, &mut deeper.departures.weight[axis][row..]);
+        }
+        packing.count() as u64
     }
 }

@@ -17,6 +17,7 @@ use crate::prepare::{Prepared, material_of};
 use crate::scene::{Geometry, Polygon};
 use crate::traverse::NOTHING;
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// Rows of rays by what they hit. Each list has room for a batch.
 pub(super) struct Sorted {
@@ -147,8 +148,13 @@ impl Out<'_, '_> {
             // A ray that stays on this side is outside if this one came from outside.
             self.surfaces.departure[at] = row.id << 1 | u32::from(entering >> lane & 1 == 0);
             self.surfaces.material[at] = material_of(geometry, (kind, row.index as usize)).0;
-            for axis in 0..3 {
-                self.surfaces.direction[axis][at] = batch.rays.direction[axis][row.ray as usize];
+        }
+        let run = first..first + chunk.len();
+        for (to, from) in self.surfaces.direction.iter_mut().zip(&batch.rays.direction) {
+            let to = &mut to[run.clone()];
+            match run_of(chunk) {
+                Some(rays) => to.copy_from_slice(&from[rays]),
+                None => to.iter_mut().zip(chunk).for_each(|(to, row)| *to = from[row.ray as usize]),
             }
         }
     }
@@ -191,8 +197,38 @@ fn gather<D: Double, const N: usize>(chunk: &[HitRow], value: impl Fn(&HitRow) -
     columns.map(|column| D::widen(&column))
 }
 
+/// What rows have of their primitives, in lanes. Neighbours often hit the same, which is then read once.
+#[inline(always)]
+fn gather_primitives<D: Double, const N: usize>(
+    chunk: &[HitRow],
+    value: impl Fn(usize) -> [f32; N],
+) -> [D; N] {
+    let first = chunk[0].index;
+    if chunk.iter().fold(0, |differs, row| differs | row.index ^ first) == 0 {
+        value(first as usize).map(|value| D::splat(f64::from(value)))
+    } else {
+        gather(chunk, |row| value(row.index as usize))
+    }
+}
+
+/// The rays of rows whose rays follow each other, as those of neighbours often do.
+#[inline(always)]
+fn run_of(chunk: &[HitRow]) -> Option<Range<usize>> {
+    let (first, last) = (chunk[0].ray as usize, chunk[chunk.len() - 1].ray as usize);
+    // They are in order.
+    (last - first == chunk.len() - 1).then_some(first..last + 1)
+}
+
 #[inline(always)]
 fn gather_rays<D: Double>(batch: &Batch<'_>, chunk: &[HitRow]) -> [Vector<D>; 2] {
+    if let Some(run) = run_of(chunk).filter(|_| chunk.len() == D::WIDTH) {
+        let (origin, direction) =
+            (widen_vector(&batch.rays.origin, run.start), widen_vector(&batch.rays.direction, run.start));
+        return match batch.departures {
+            None => [origin, direction],
+            Some(departures) => [origin + widen_vector(&departures.origin_low, run.start), direction],
+        };
+    }
     let [ox, oy, oz, dx, dy, dz] = gather::<D, 6>(chunk, |row| {
         let at = |column: &[f32]| column[row.ray as usize];
         let ([ox, oy, oz], [dx, dy, dz]) = (&batch.rays.origin, &batch.rays.direction);
@@ -211,13 +247,15 @@ fn gather_rays<D: Double>(batch: &Batch<'_>, chunk: &[HitRow]) -> [Vector<D>; 2]
 /// is out of the question.
 fn spheres<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
     let [origin, direction] = gather_rays::<D>(batch, chunk);
-    let [x, y, z, radius, t, own] = gather::<D, 6>(chunk, |row| {
-        let sphere = &prepared.scene.geometry.spheres[row.index as usize];
+    let [x, y, z, radius] = gather_primitives::<D, 4>(chunk, |index| {
+        let sphere = &prepared.scene.geometry.spheres[index];
         let [x, y, z] = prepared.scale.position(sphere.center).to_array();
+        [x, y, z, prepared.scale.length(sphere.radius)]
+    });
+    let [t, own] = gather::<D, 2>(chunk, |row| {
         let ray = row.ray as usize;
         let is_own = batch.departures.is_some_and(|departures| departures.departure[ray] >> 1 == row.id);
-        let t = batch.hits.t[ray - batch.first];
-        [x, y, z, prepared.scale.length(sphere.radius), t, f32::from(u8::from(is_own))]
+        [batch.hits.t[ray - batch.first], f32::from(u8::from(is_own))]
     });
     let zero = D::splat(0.0);
     let center = Vector::new(x, y, z);
@@ -247,8 +285,8 @@ fn triangles<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[Hit
     let geometry = &prepared.scene.geometry;
     let [origin, direction] = gather_rays::<D>(batch, chunk);
     let corner = |which: usize| {
-        let [x, y, z] = gather::<D, 3>(chunk, |row| {
-            let vertex = geometry.triangles[row.index as usize].vertices[which];
+        let [x, y, z] = gather_primitives::<D, 3>(chunk, |index| {
+            let vertex = geometry.triangles[index].vertices[which];
             prepared.scale.position(geometry.vertices[vertex as usize]).to_array()
         });
         Vector::new(x, y, z)
@@ -266,8 +304,8 @@ fn triangles<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[Hit
     let shading_normal = prepared.plan.vertex_normals.then(|| {
         let weight_0 = one - weight_1 - weight_2;
         let at = |which: usize| {
-            let [x, y, z] = gather::<D, 3>(chunk, |row| {
-                geometry.triangles[row.index as usize]
+            let [x, y, z] = gather_primitives::<D, 3>(chunk, |index| {
+                geometry.triangles[index]
                     .normals
                     .map_or(Vec3::ZERO, |normals| geometry.normals[normals[which] as usize])
                     .to_array()
@@ -289,11 +327,11 @@ fn triangles<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[Hit
 fn polygons<D: Double>(prepared: &Prepared<'_>, batch: &Batch<'_>, chunk: &[HitRow]) -> Found<D> {
     let geometry = &prepared.scene.geometry;
     let [origin, direction] = gather_rays::<D>(batch, chunk);
-    let [x, y, z, t] = gather::<D, 4>(chunk, |row| {
-        let first = geometry.polygons[row.index as usize].vertices.start as usize;
-        let [x, y, z] = prepared.scale.position(geometry.vertices[first]).to_array();
-        [x, y, z, batch.hits.t[row.ray as usize - batch.first]]
+    let [x, y, z] = gather_primitives::<D, 3>(chunk, |index| {
+        let first = geometry.polygons[index].vertices.start as usize;
+        prepared.scale.position(geometry.vertices[first]).to_array()
     });
+    let [t] = gather::<D, 1>(chunk, |row| [batch.hits.t[row.ray as usize - batch.first]]);
     let point = Vector::new(x, y, z);
     let mut columns = [[0.0; 8]; 3];
     for lane in 0..D::WIDTH {

@@ -7,7 +7,7 @@ use super::super::{Counts, DEAD};
 use super::{Columns, PACKET, Packet};
 use crate::kernel::RaySpace;
 use crate::kernel::sphere::Line;
-use crate::lanes::{Mask, Single};
+use crate::lanes::{Lanes, Mask, Single};
 use crate::prepare::bvh::Node;
 use crate::prepare::{Hierarchy, Place};
 
@@ -27,9 +27,22 @@ impl Packet {
         loop {
             let bits = mask.bits();
             if bits != 0 {
-                let mut rays = Group { packet: self, row: group as usize * F::WIDTH };
                 let used = bits.count_ones() as usize;
-                leaf::visit::<F, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
+                let upper = bits.trailing_zeros() as usize / F::Node::WIDTH;
+                let is_in_half = bits >> (upper * F::Node::WIDTH) >> F::Node::WIDTH == 0;
+                let row = group as usize * F::WIDTH;
+                match F::halves(mask) {
+                    // Rays of a packet lie in an order, so those that meet a leaf often lie side by side.
+                    Some(halves) if is_in_half => {
+                        let mut rays = Group { packet: self, row: row + upper * F::Node::WIDTH };
+                        let mask = (halves[upper], used);
+                        leaf::visit::<F::Node, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, mask, counts);
+                    }
+                    _ => {
+                        let mut rays = Group { packet: self, row };
+                        leaf::visit::<F, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
+                    }
+                }
             }
             group += 1;
             if group as usize * F::WIDTH >= PACKET {
@@ -163,6 +176,8 @@ struct Group<'a> {
 }
 
 impl<F: Single> RayLanes<F> for Group<'_> {
+    const ARE_ALIKE: bool = true;
+
     #[inline(always)]
     fn axes(&self) -> [usize; 3] {
         self.packet.axes

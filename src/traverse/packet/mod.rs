@@ -13,7 +13,7 @@ use super::coherence::{WIDEST_SLOPES, common_order};
 use super::exact::Spot;
 use super::{Counts, DEAD, Ends, Rays, child};
 use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
-use crate::lanes::{Lanes, Mask, Single, Vector};
+use crate::lanes::{Lanes, Mask, RECORD, Single, Vector, least_of_each};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
 
@@ -141,20 +141,22 @@ impl Packet {
             self.direction[axis].copy_from_slice(direction);
             self.origin[axis].copy_from_slice(&rays.origin[axis][run.clone()]);
         }
-        let mut slopes = [[F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY)]; 2];
+        self.t.copy_from_slice(&t[run.clone()]);
+        let mut bounds = [F::splat(f32::INFINITY); RECORD];
         for row in (0..PACKET).step_by(F::WIDTH) {
             let t_per_z = F::splat(1.0) / F::load(&self.direction[axes[2]][row..]);
             t_per_z.store(&mut self.t_per_z[row..]);
-            for (slope, bounds) in slopes.iter_mut().enumerate() {
-                let shear = F::load(&self.direction[axes[slope]][row..]) * t_per_z;
-                shear.store(&mut self.shear[slope][row..]);
-                *bounds = widened(*bounds, shear);
-            }
+            let shear = [0, 1].map(|axis| F::load(&self.direction[axes[axis]][row..]) * t_per_z);
+            shear[0].store(&mut self.shear[0][row..]);
+            shear[1].store(&mut self.shear[1][row..]);
+            let [x, y] = shear;
+            lower(&mut bounds, [x, -x, y, -y, -F::load(&self.t[row..])]);
         }
-        if slopes.into_iter().map(folded).any(|[least, largest]| largest - least > WIDEST_SLOPES) {
+        let [x, minus_x, y, minus_y, minus_t, ..] = least_of_each(bounds);
+        if -minus_x - x > WIDEST_SLOPES || -minus_y - y > WIDEST_SLOPES {
             return false;
         }
-        self.t.copy_from_slice(&t[run.clone()]);
+        self.hull.t_max = -minus_t;
         self.end = self.t;
         self.error = [0.0; PACKET];
         self.spot = [Spot::NOTHING.0; PACKET];
@@ -174,46 +176,78 @@ impl Packet {
     /// What the tests need beside origin, direction and ray space.
     fn derive<F: Single>(&mut self, hierarchy: &Hierarchy) {
         let one = F::splat(1.0);
-        let none = [F::splat(f32::INFINITY), F::splat(f32::NEG_INFINITY)];
-        let (mut nears, mut fars, mut inverses) = ([none; 3], [none; 3], [none; 3]);
+        let mut bounds = [F::splat(f32::INFINITY); RECORD];
         for row in (0..PACKET).step_by(F::WIDTH) {
-            let origin = self.origin.map_lanes::<F>(row);
             let direction = self.direction.map_lanes::<F>(row);
             let a = direction.dot(direction);
             a.store(&mut self.a[row..]);
             if !hierarchy.spheres.is_empty() {
                 (one / a).store(&mut self.inverse_a[row..]);
             }
-            let third = [direction.x, direction.y, direction.z][self.axes[2]];
-            let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
+            let direction = [direction.x, direction.y, direction.z];
+            let least = direction[self.axes[2]].abs() * F::splat(LEAST_COMPONENT);
+            let inverse = |axis: usize| {
+                if axis == self.axes[2] {
+                    return F::load(&self.t_per_z[row..]);
+                }
+                let size = direction[axis].abs().max(least);
+                one / if self.backwards[axis] { -size } else { size }
+            };
+            let [x, y, z] = [inverse(0), inverse(1), inverse(2)];
+            x.store(&mut self.inverse[0][row..]);
+            y.store(&mut self.inverse[1][row..]);
+            z.store(&mut self.inverse[2][row..]);
+            lower(&mut bounds, [x, y, z, -x, -y, -z]);
+        }
+        let [x, y, z, minus_x, minus_y, minus_z, ..] = least_of_each(bounds);
+        self.hull.inverse = [[x, -minus_x], [y, -minus_y], [z, -minus_z]];
+        self.pad::<F>(hierarchy);
+    }
+
+    /// Moves origins by as much as boxes are grown.
+    fn pad<F: Single>(&mut self, hierarchy: &Hierarchy) {
+        let backwards = self.backwards;
+        let has_one_origin = self.has_one_origin::<F>();
+        let mut bounds = [F::splat(f32::INFINITY); RECORD];
+        for row in (0..PACKET).step_by(F::WIDTH) {
+            let Vector { x, y, z } = self.origin.map_lanes::<F>(row);
+            let farthest = x.abs().max(y.abs()).max(z.abs());
             let padding = (F::splat(hierarchy.extent) + farthest) * F::splat(PADDING);
-            padding.store(&mut self.padding[row..]);
-            let least = third.abs() * F::splat(LEAST_COMPONENT);
-            let by_axis = [(origin.x, direction.x), (origin.y, direction.y), (origin.z, direction.z)];
-            for (axis, (origin, direction)) in by_axis.into_iter().enumerate() {
-                let size = direction.abs().max(least);
-                let (forward, backward) = (origin + padding, origin - padding);
-                let (near, far, component) =
-                    if self.backwards[axis] { (backward, forward, -size) } else { (forward, backward, size) };
-                let inverse =
-                    if axis == self.axes[2] { F::load(&self.t_per_z[row..]) } else { one / component };
-                near.store(&mut self.near_origin[axis][row..]);
-                far.store(&mut self.far_origin[axis][row..]);
-                inverse.store(&mut self.inverse[axis][row..]);
-                nears[axis] = widened(nears[axis], near);
-                fars[axis] = widened(fars[axis], far);
-                inverses[axis] = widened(inverses[axis], inverse);
+            let moved = [x, y, z].map(|origin| [origin - padding, origin + padding]);
+            let rows = if has_one_origin { 0..PACKET } else { row..row + F::WIDTH };
+            for row in rows.step_by(F::WIDTH) {
+                padding.store(&mut self.padding[row..]);
+                for (axis, [less, more]) in moved.into_iter().enumerate() {
+                    let (near, far) = if backwards[axis] { (less, more) } else { (more, less) };
+                    near.store(&mut self.near_origin[axis][row..]);
+                    far.store(&mut self.far_origin[axis][row..]);
+                }
+            }
+            let [[less_x, more_x], [less_y, more_y], [less_z, more_z]] = moved;
+            lower(&mut bounds, [less_x, less_y, less_z, -more_x, -more_y, -more_z]);
+            if has_one_origin {
+                break;
             }
         }
+        // The nearest near plane belongs to the origin that is farthest along, the farthest far plane to the other.
+        let least = least_of_each(bounds);
         for axis in 0..3 {
-            let [near, far, inverse] = [nears[axis], fars[axis], inverses[axis]].map(folded);
-            // The nearest near plane belongs to the origin that is farthest along, the farthest far plane to the other.
-            let (along, against) = if self.backwards[axis] { (0, 1) } else { (1, 0) };
-            self.hull.near_origin[axis] = near[along];
-            self.hull.far_origin[axis] = far[against];
-            self.hull.inverse[axis] = inverse;
+            let (less, more) = (least[axis], -least[axis + 3]);
+            let (near, far) = if backwards[axis] { (less, more) } else { (more, less) };
+            (self.hull.near_origin[axis], self.hull.far_origin[axis]) = (near, far);
         }
-        self.hull.t_max = column_bounds::<F>(&self.end)[1];
+    }
+
+    /// As rays from an eye have.
+    fn has_one_origin<F: Single>(&self) -> bool {
+        let mut differs = F::first(0);
+        for column in &self.origin {
+            let first = F::splat(column[0]);
+            for row in (0..PACKET).step_by(F::WIDTH) {
+                differs = differs | !F::load(&column[row..]).eq(first);
+            }
+        }
+        !differs.any()
     }
 
     /// Puts the results back.
@@ -258,7 +292,7 @@ impl Packet {
                         counts,
                     );
                     if std::mem::take(&mut self.is_changed) {
-                        self.hull.t_max = column_bounds::<F>(&self.end)[1];
+                        self.hull.t_max = largest::<F>(&self.end);
                     }
                     if ANY && self.hull.t_max < 0.0 {
                         return;
@@ -375,34 +409,25 @@ impl Columns for [Column; 3] {
 }
 
 #[inline(always)]
-fn widened<F: Single>([least, largest]: [F; 2], by: F) -> [F; 2] {
-    [by.min(least), by.max(largest)]
+fn lower<F: Single, const N: usize>(bounds: &mut [F; RECORD], by: [F; N]) {
+    for (bound, by) in bounds.iter_mut().zip(by) {
+        *bound = by.min(*bound);
+    }
 }
 
-/// The least and the largest of all lanes: the same in any order, unlike a sum. By halves, since a chain of sixteen is slow.
+/// The largest of a column.
 #[inline(always)]
-fn folded<F: Single>([least, largest]: [F; 2]) -> [f32; 2] {
-    let mut array = [[0.0; 16]; 2];
-    least.store(&mut array[0]);
-    largest.store(&mut array[1]);
-    let [least, largest] = &mut array;
+fn largest<F: Single>(column: &Column) -> f32 {
+    let mut lanes = [0.0; 16];
+    let first = F::load(column);
+    let rows = (F::WIDTH..PACKET).step_by(F::WIDTH);
+    rows.fold(first, |largest, row| F::load(&column[row..]).max(largest)).store(&mut lanes);
     for half in [8, 4, 2, 1] {
         if half < F::WIDTH {
             for lane in 0..half {
-                least[lane] = Lanes::min(least[lane + half], least[lane]);
-                largest[lane] = Lanes::max(largest[lane + half], largest[lane]);
+                lanes[lane] = Lanes::max(lanes[lane + half], lanes[lane]);
             }
         }
     }
-    [least[0], largest[0]]
-}
-
-#[inline(always)]
-fn column_bounds<F: Single>(column: &Column) -> [f32; 2] {
-    let first = F::load(column);
-    folded(
-        (F::WIDTH..PACKET)
-            .step_by(F::WIDTH)
-            .fold([first, first], |bounds, row| widened(bounds, F::load(&column[row..]))),
-    )
+    lanes[0]
 }

@@ -55,6 +55,8 @@ impl<'a, L: Single> Listed<'a, L> {
 }
 
 impl<L: Single> RayLanes<L> for Listed<'_, L> {
+    const ARE_ALIKE: bool = false;
+
     #[inline(always)]
     fn axes(&self) -> [usize; 3] {
         axes_from(self.rays.class.third)
