@@ -108,7 +108,7 @@ mod tests {
         for (codes, max_code) in [(Codes::of_8_bits(), u8::MAX.into()), (Codes::of_16_bits(), u16::MAX)] {
             let begins: Vec<f64> =
                 (1..=max_code).map(|code| decode((f64::from(code) - 0.5) / f64::from(max_code))).collect();
-            let edges = (0..codes.first.len()).map(|bucket| codes.floor + ((bucket as u32) << codes.shift));
+            let edges = (0..).zip(&codes.first).map(|(bucket, _)| codes.floor + (bucket << codes.shift));
             let edges = edges.map(f32::from_bits).chain(codes.thresholds.iter().copied());
             for value in edges.flat_map(|edge| [edge.next_down(), edge, edge.next_up()]) {
                 let expected = begins.partition_point(|&begin| begin <= f64::from(value));
