@@ -135,8 +135,8 @@ pub fn render(scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, Re
     if !region.fits(size.width, size.height) {
         return Err(RenderError::Region { region, width: size.width, height: size.height });
     }
-    let image = Image::black(&region).map_err(|_| RenderError::Memory(region.pixels()))?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    let image = pool.install(|| Image::black(&region)).map_err(|_| RenderError::Memory(region.pixels()))?;
     match options.engine {
         Engine::Reference => with_reference(scene, options, &pool, image),
         Engine::Wavefront { width, batch, records, rays } => {

@@ -2,7 +2,7 @@
 
 use super::measuring::MeasuringArguments;
 use super::progress::Progress;
-use super::{Failure, interrupt, output};
+use super::{Failure, interrupt, on_threads, output};
 use crate::lanes::Width;
 use crate::load;
 use crate::measure::rungs::{self, RungOptions, Rungs};
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::result(&format!("{}\n\n{tables}", compared.title()))?;
     }
     if let Some(folder) = folder {
-        folder.write(&compared, images)?;
+        on_threads(arguments.measuring.threads(), || folder.write(&compared, images))??;
         output::diagnostic(&format!("{}: the report", folder.page().display()));
     }
     match compared.comparison.mistakes() {

@@ -3,7 +3,7 @@
 use super::engine::EngineArguments;
 use super::progress::{Progress, Style};
 use super::settings::SceneSettings;
-use super::{Failure, interrupt, output, pixel};
+use super::{Failure, interrupt, on_threads, output, pixel};
 use crate::film::{self, BitDepth, Region};
 use crate::lanes::Isa;
 use crate::lanes::Width;
@@ -137,7 +137,7 @@ fn write_picture(arguments: &Arguments, output: &Path) -> Result<(), Failure> {
 
     let write_start = Instant::now();
     let depth = if arguments.bits == "16" { BitDepth::Sixteen } else { BitDepth::Eight };
-    film::write(&rendered.image, output, depth)?;
+    on_threads(arguments.engine.threads(), || film::write(&rendered.image, output, depth))??;
     if let Some(folder) = &arguments.record_rays {
         trace::write_rays(&scene.geometry, &rendered.recorded, folder)
             .map_err(|(path, why)| Failure::Write { path, why })?;

@@ -1,5 +1,6 @@
 //! A picture in memory, and a rectangle of one.
 
+use rayon::prelude::*;
 use std::collections::TryReserveError;
 
 /// A rectangle of pixels, counted from the full image's top left, half open.
@@ -59,7 +60,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// A black picture as large as a region.
+    /// A black picture as large as a region. The system hands over its pages as they are first written to,
+    /// which takes time: all threads of the pool that it is called in share in it.
     ///
     /// # Errors
     /// There is not that much memory.
@@ -67,7 +69,7 @@ impl Image {
         let count = usize::try_from(region.pixels()).unwrap_or(usize::MAX);
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count)?;
-        pixels.resize(count, [0.0; 3]);
+        pixels.par_extend(rayon::iter::repeat_n([0.0; 3], count));
         Ok(Self { width: region.width(), height: region.height(), pixels })
     }
 

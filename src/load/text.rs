@@ -34,9 +34,9 @@ pub(super) struct Text {
 impl Text {
     /// Reads a file that must be UTF-8.
     pub(super) fn read(path: &Path) -> Result<Self, InputError> {
-        String::from_utf8(read_bytes(path)?).map(|content| Self::new(path, &content)).map_err(|error| {
+        String::from_utf8(read_bytes(path)?).map(|content| Self::new(path, content)).map_err(|error| {
             let (good, bad) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
-            let text = Self::new(path, &String::from_utf8_lossy(good));
+            let text = Self::new(path, String::from_utf8_lossy(good).into_owned());
             let message = format!("byte 0x{:02x} is not UTF-8 text; is this a binary file?", bad[0]);
             text.error(text.content.len(), message)
         })
@@ -44,13 +44,17 @@ impl Text {
 
     /// Reads a file whose comments may be in any encoding; outside them what is not UTF-8 means nothing to any format.
     pub(super) fn read_lossy(path: &Path) -> Result<Self, InputError> {
-        Ok(Self::new(path, &String::from_utf8_lossy(&read_bytes(path)?)))
+        let content = String::from_utf8(read_bytes(path)?)
+            .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned());
+        Ok(Self::new(path, content))
     }
 
     /// A byte order mark is passed over.
-    fn new(path: &Path, content: &str) -> Self {
-        let content = content.strip_prefix('\u{feff}').unwrap_or(content);
-        Self { path: path.to_owned(), content: content.to_owned() }
+    fn new(path: &Path, mut content: String) -> Self {
+        if content.starts_with('\u{feff}') {
+            content.remove(0);
+        }
+        Self { path: path.to_owned(), content }
     }
 
     /// Line and column of a byte offset.

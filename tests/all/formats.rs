@@ -3,7 +3,7 @@
 use crate::support::Folder;
 use glam::Vec3;
 use wavelane::load::{Loaded, load};
-use wavelane::scene::{Dielectric, Fresnel, Light, Material, Projection, Rgb, Scene};
+use wavelane::scene::{Dielectric, Fresnel, Light, Material, Projection, Rgb, Scene, Triangle};
 
 fn loaded(files: &[(&str, &str)]) -> Loaded {
     let folder = Folder::new();
@@ -101,6 +101,20 @@ fn obj_indices_may_be_negative_and_lines_continued() {
     let corners: Vec<_> = plain.geometry.triangles.iter().map(|triangle| triangle.vertices).collect();
     assert_eq!(corners, [[0, 1, 2], [0, 2, 3]]);
     assert!(plain.geometry.triangles.iter().all(|triangle| triangle.normals.is_some()));
+}
+
+#[test]
+fn obj_vertices_and_faces_keep_the_order_of_the_file() {
+    let materials = "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nnewmtl red\nKd 0.5 0 0\n";
+    let faces = "o a\nusemtl red\nf 4 2 3\nusemtl blue\nf 3 2 5\no b\nusemtl red\nf 2 5 4\n";
+    let scene = scene(&[("a.obj", &format!("mtllib a.mtl\nv 9 9 9\n{SQUARE}{faces}")), ("a.mtl", materials)]);
+    let seen = |triangle: &Triangle| {
+        (triangle.vertices, scene.materials[triangle.material.0 as usize].diffuse.to_array())
+    };
+    let (red, blue) = ([0.5, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    let seen: Vec<_> = scene.geometry.triangles.iter().map(seen).collect();
+    assert_eq!(seen, [([3, 1, 2], red), ([2, 1, 4], blue), ([1, 4, 3], red)]);
+    assert_eq!(scene.geometry.vertices[0], Vec3::splat(9.0), "though no face uses it");
 }
 
 #[test]

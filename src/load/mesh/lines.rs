@@ -1,7 +1,9 @@
 //! The lines of OBJ and MTL files as they are meant: continued ones joined, comments cut off.
 
 /// A line with its continuations joined and its comment cut off.
+#[derive(Default)]
 pub(super) struct LogicalLine<'a> {
+    /// Each with the byte offset where it begins.
     pub(super) words: Vec<(&'a str, usize)>,
     /// Where the line, or what comes after its first word, ends.
     end: usize,
@@ -14,12 +16,35 @@ impl<'a> LogicalLine<'a> {
     }
 }
 
-/// The lines of an OBJ or MTL file that say something.
-pub(super) fn logical_lines(content: &str) -> Vec<LogicalLine<'_>> {
-    let mut lines: Vec<LogicalLine<'_>> = Vec::new();
-    let mut continued = false;
-    let mut offset = 0;
-    for raw in content.split_inclusive('\n') {
+/// The lines of a file that say something, one after the other in the memory of one.
+pub(super) struct LogicalLines<'a> {
+    content: &'a str,
+    /// Where the next line of the file begins.
+    offset: usize,
+    line: LogicalLine<'a>,
+}
+
+impl<'a> LogicalLines<'a> {
+    pub(super) fn new(content: &'a str) -> Self {
+        Self { content, offset: 0, line: LogicalLine::default() }
+    }
+
+    pub(super) fn next(&mut self) -> Option<&LogicalLine<'a>> {
+        while self.offset < self.content.len() {
+            self.line.words.clear();
+            while self.take_line_of_file() {}
+            if !self.line.words.is_empty() {
+                return Some(&self.line);
+            }
+        }
+        None
+    }
+
+    /// Adds the words of the next line of the file, and says whether it goes on in the one after.
+    fn take_line_of_file(&mut self) -> bool {
+        let offset = self.offset;
+        let raw = self.content[offset..].split_inclusive('\n').next().unwrap_or_default();
+        self.offset += raw.len();
         let line = raw.trim_end();
         // A name may hold a #, which begins a comment elsewhere.
         let first = line.split_whitespace().next().unwrap_or_default();
@@ -29,19 +54,11 @@ pub(super) fn logical_lines(content: &str) -> Vec<LogicalLine<'_>> {
             Some(code) => (code, true),
             None => (code, false),
         };
-        let words =
-            code.split_whitespace().map(|word| (word, offset + (word.as_ptr().addr() - raw.as_ptr().addr())));
-        let end = offset + code.len();
-        match lines.last_mut() {
-            Some(last) if continued => {
-                last.words.extend(words);
-                last.end = end;
-            }
-            _ => lines.push(LogicalLine { words: words.collect(), end }),
-        }
-        continued = continues;
-        offset += raw.len();
+        let words = code.split_whitespace();
+        self.line
+            .words
+            .extend(words.map(|word| (word, offset + (word.as_ptr().addr() - raw.as_ptr().addr()))));
+        self.line.end = offset + code.len();
+        continues
     }
-    lines.retain(|line| !line.words.is_empty());
-    lines
 }

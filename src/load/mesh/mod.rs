@@ -1,14 +1,12 @@
 //! Mesh files, alone or as a part of a scene.
 //!
-//! - `obj` with `mtl`, and `ply`: a file a format; `lines`: the logical lines of the first two; `obj_check`: the pass over
-//!   an OBJ file that finds what the library would trip over
+//! - `obj` with `mtl`, and `ply`: a file a format; `lines`: the logical lines of the first two
 //! - `faces`: how a face is cut into triangles; `triangles`: the mesh that comes of it, on its way into the scene
 
 mod faces;
 mod lines;
 mod mtl;
 mod obj;
-mod obj_check;
 mod ply;
 mod triangles;
 

@@ -47,20 +47,24 @@ pub(super) fn read(path: &Path) -> Result<Mesh, InputError> {
             "the file has no faces, so there is nothing to see",
         ));
     }
-    mesh(path, &vertices, &faces, has_normals)
+    mesh(path, vertices, &faces, has_normals)
 }
 
-fn mesh(path: &Path, vertices: &[Vertex], faces: &[Face], has_normals: bool) -> Result<Mesh, InputError> {
+fn mesh(path: &Path, vertices: Vec<Vertex>, faces: &[Face], has_normals: bool) -> Result<Mesh, InputError> {
     let mut mesh = Mesh::new(path);
-    for (index, vertex) in vertices.iter().enumerate() {
+    for (index, vertex) in vertices.into_iter().enumerate() {
         let numbers = vertex.position.iter().chain(&vertex.normal);
         numbers.copied().try_for_each(|value| number::check(value).map(drop)).map_err(|message| {
             InputError::refused(path, Place::Element(format!("vertex {}", index + 1)), message)
         })?;
         mesh.bounds = widened(mesh.bounds, DVec3::from(vertex.position));
         mesh.positions.push(DVec3::from(vertex.position));
-        mesh.normals.push(DVec3::from(vertex.normal));
+        if has_normals {
+            mesh.normals.push(DVec3::from(vertex.normal));
+        }
     }
+    let count = mesh.positions.len();
+    let mut corners = Vec::new();
     for (index, face) in faces.iter().enumerate() {
         let error =
             |message| InputError::refused(path, Place::Element(format!("face {}", index + 1)), message);
@@ -71,13 +75,15 @@ fn mesh(path: &Path, vertices: &[Vertex], faces: &[Face], has_normals: bool) -> 
             )));
         }
         let corner = |&corner: &i64| match u32::try_from(corner) {
-            Ok(index) if (index as usize) < vertices.len() => Ok(index),
+            Ok(index) if (index as usize) < count => Ok(index),
             _ => Err(error(format!(
-                "vertex {corner} is out of range; the file has {} vertices, counted from 0",
-                vertices.len()
+                "vertex {corner} is out of range; the file has {count} vertices, counted from 0"
             ))),
         };
-        let corners: Vec<u32> = face.corners.iter().map(corner).collect::<Result<_, _>>()?;
+        corners.clear();
+        for index in face.corners.iter().map(corner) {
+            corners.push(index?);
+        }
         mesh.add_face(&corners, has_normals.then_some(&corners), None);
     }
     Ok(mesh)

@@ -1,11 +1,10 @@
 //! A mesh of triangles on its way into the scene: scaled, turned and moved, and of the materials that are meant.
 
-use super::faces::cut_into_triangles;
+use super::faces::Cutter;
 use crate::load::error::{InputError, Place, Warnings};
 use crate::load::number::{self, rounded_3};
 use crate::math::sin_cos_degrees;
 use crate::scene::{Added, Geometry, Material, MaterialId};
-use earcut::Earcut;
 use glam::{DMat3, DVec3};
 use std::path::{Path, PathBuf};
 
@@ -16,20 +15,20 @@ pub(in crate::load) struct Mesh {
     /// Smallest and largest coordinates of all vertices of the file, those that no face uses included.
     pub(super) bounds: Option<(DVec3, DVec3)>,
     pub(super) normals: Vec<DVec3>,
-    triangles: Vec<MeshTriangle>,
+    faces: Vec<Face>,
+    /// Indices into `positions`: those of the first face, then those of the second, and so on.
+    corners: Vec<u32>,
+    /// Indices into `normals`: likewise, of the faces that have some.
+    corner_normals: Vec<u32>,
     /// The file's own.
     pub(in crate::load) materials: Vec<Material>,
-    faces: u64,
-    earcut: Earcut<f64>,
 }
 
-struct MeshTriangle {
-    corners: [u32; 3],
-    normals: Option<[u32; 3]>,
+struct Face {
+    corners: u32,
+    has_normals: bool,
     /// An index into the file's own materials.
     material: Option<u32>,
-    /// The face it is cut from, counted from 1.
-    face: u64,
 }
 
 /// Scale, then rotation about x, y and z in this order, then translation.
@@ -82,25 +81,23 @@ impl Mesh {
             positions: Vec::new(),
             bounds: None,
             normals: Vec::new(),
-            triangles: Vec::new(),
+            faces: Vec::new(),
+            corners: Vec::new(),
+            corner_normals: Vec::new(),
             materials: Vec::new(),
-            faces: 0,
-            earcut: Earcut::new(),
         }
     }
 
-    /// Adds the triangles of a face; normals, where there are any, stand beside the corners. Indices must be in range.
+    pub(super) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Adds a face; normals, where there are any, stand beside the corners. What the indices refer to may come later.
     pub(super) fn add_face(&mut self, corners: &[u32], normals: Option<&[u32]>, material: Option<u32>) {
-        self.faces += 1;
-        let points: Vec<DVec3> = corners.iter().map(|&corner| self.positions[corner as usize]).collect();
-        let face = self.faces;
-        let cut = cut_into_triangles(&mut self.earcut, &points);
-        self.triangles.extend(cut.into_iter().map(|places| MeshTriangle {
-            corners: places.map(|place| corners[place]),
-            normals: normals.map(|normals| places.map(|place| normals[place])),
-            material,
-            face,
-        }));
+        let count = u32::try_from(corners.len()).unwrap_or(u32::MAX);
+        self.faces.push(Face { corners: count, has_normals: normals.is_some(), material });
+        self.corners.extend_from_slice(corners);
+        self.corner_normals.extend_from_slice(normals.unwrap_or_default());
     }
 
     /// Puts the mesh into the scene.
@@ -116,9 +113,12 @@ impl Mesh {
         let normals = self.normals.iter().map(|&normal| rounded_3(transform.normal(normal)));
         let first_normal =
             geometry.add_normals(normals).map_err(|problem| self.error(Place::File, problem.to_string()))?;
-        for triangle in &self.triangles {
-            let place = || Place::Element(format!("face {}", triangle.face));
-            let material = match (choice, triangle.material) {
+        geometry.triangles.reserve_exact(self.corners.len() - 2 * self.faces.len());
+        let mut cutter = Cutter::default();
+        let (mut corners, mut normals) = (self.corners.as_slice(), self.corner_normals.as_slice());
+        for (index, face) in self.faces.iter().enumerate() {
+            let place = || Place::Element(format!("face {}", index + 1));
+            let material = match (choice, face.material) {
                 (MaterialChoice::Given(material), _) => material,
                 (MaterialChoice::Own { first, .. }, Some(own)) => MaterialId(first.0 + own),
                 (MaterialChoice::Own { otherwise, .. }, None) => otherwise.ok_or_else(|| {
@@ -127,13 +127,21 @@ impl Mesh {
                     self.error(place(), message)
                 })?,
             };
-            let corners = triangle.corners.map(|corner| first_vertex + corner);
-            let normals = triangle.normals.map(|normals| normals.map(|normal| first_normal + normal));
-            let added = geometry.add_triangle(corners, normals, material);
-            if added.map_err(|problem| self.error(place(), problem.to_string()))? == Added::WithoutArea {
-                warnings.add("without area", &self.path, || {
-                    (place(), "a triangle of this face has no area and is left out".to_owned())
-                });
+            let of_face = corners.split_off(..face.corners as usize).unwrap_or_default();
+            let normals_of_face = match face.has_normals {
+                true => normals.split_off(..face.corners as usize),
+                false => None,
+            };
+            for &places in cutter.cut(of_face.iter().map(|&corner| self.positions[corner as usize])) {
+                let corners = places.map(|place| first_vertex + of_face[place]);
+                let normals =
+                    normals_of_face.map(|normals| places.map(|place| first_normal + normals[place]));
+                let added = geometry.add_triangle(corners, normals, material);
+                if added.map_err(|problem| self.error(place(), problem.to_string()))? == Added::WithoutArea {
+                    warnings.add("without area", &self.path, || {
+                        (place(), "a triangle of this face has no area and is left out".to_owned())
+                    });
+                }
             }
         }
         Ok(())

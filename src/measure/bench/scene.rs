@@ -191,8 +191,7 @@ impl PhaseSeconds {
             (all > 0.0).then(|| traced / all)
         });
         let frame = simd.trace_seconds.map(|seconds| seconds.median);
-        let write =
-            (0..options.repeat).map_while(|_| write_seconds(&simd.last.image, options.scratch)).collect();
+        let write = (0..options.repeat).map_while(|_| write_seconds(&simd.last.image, options)).collect();
         Self {
             load,
             build: Spread::of(build, Better::Less),
@@ -204,9 +203,10 @@ impl PhaseSeconds {
 }
 
 /// None where it cannot be written.
-fn write_seconds(image: &Image, scratch: &Path) -> Option<f64> {
+fn write_seconds(image: &Image, options: &BenchOptions<'_>) -> Option<f64> {
+    let path = options.scratch.join("frame.png");
     let start = Instant::now();
-    film::write(image, &scratch.join("frame.png"), BitDepth::Eight).ok()?;
+    options.pool.install(|| film::write(image, &path, BitDepth::Eight)).ok()?;
     Some(start.elapsed().as_secs_f64())
 }
 
