@@ -16,23 +16,25 @@ impl Directory {
     const INDEX: u32 = (1 << 30) - 1;
 
     pub(super) fn new(geometry: &Geometry) -> Result<Self, PrepareError> {
-        let spheres = geometry.spheres.iter().map(|sphere| sphere.id);
-        let triangles = geometry.triangles.iter().map(|triangle| triangle.id);
-        let polygons = geometry.polygons.iter().map(|polygon| polygon.id);
-        let last = geometry.materials().map(|(id, _)| id.0).max();
-        let count = last.map_or(0, |last| u64::from(last) + 1);
+        // Columns are in the order of ids.
+        let last = [
+            geometry.spheres.last().map(|sphere| sphere.id),
+            geometry.triangles.last().map(|triangle| triangle.id),
+            geometry.polygons.last().map(|polygon| polygon.id),
+        ];
+        let count = last.into_iter().flatten().map(|id| u64::from(id.0) + 1).max().unwrap_or(0);
         if count > u64::from(Self::LIMIT) {
             return Err(PrepareError::TooMany { count });
         }
-        let mut entries = vec![0; last.map_or(0, |last| last as usize + 1)];
-        for (index, id) in (0_u32..).zip(spheres) {
-            entries[id.0 as usize] = index;
+        let mut entries = vec![0; usize::try_from(count).unwrap_or(0)];
+        for (index, sphere) in (0_u32..).zip(&geometry.spheres) {
+            entries[sphere.id.0 as usize] = index;
         }
-        for (index, id) in (0_u32..).zip(triangles) {
-            entries[id.0 as usize] = (1 << 30) | index;
+        for (index, triangle) in (0_u32..).zip(&geometry.triangles) {
+            entries[triangle.id.0 as usize] = (1 << 30) | index;
         }
-        for (index, id) in (0_u32..).zip(polygons) {
-            entries[id.0 as usize] = (2 << 30) | index;
+        for (index, polygon) in (0_u32..).zip(&geometry.polygons) {
+            entries[polygon.id.0 as usize] = (2 << 30) | index;
         }
         Ok(Self { entries })
     }

@@ -2,7 +2,8 @@
 
 use super::Scale;
 use super::blocks::{BLOCK, PolygonFace, SphereBlock, TriangleBlock, touch_distance};
-use super::bvh::{self, Bounds, Child, Costs, Item, Kind, Leaf, Node, Unpacked};
+use super::bvh::{self, Bounds, Child, Costs, Kind, Leaf, Node, Tree, Unpacked};
+use super::sources::{Order, Sources, bounds_of};
 use crate::lanes::prefetch;
 use crate::scene::{Geometry, Scene, polygon_normal};
 use glam::{DVec3, Vec3};
@@ -59,38 +60,27 @@ const _: () = assert!(BLOCK == COSTS.largest_leaf as usize && BLOCK <= 1 << COUN
 impl Hierarchy {
     pub(super) fn new(scene: &Scene, scale: Scale) -> Self {
         let geometry = &scene.geometry;
-        let sources: Vec<Source> = sources(geometry);
-        let items: Vec<Item> = sources.par_iter().map(|source| source.item(geometry, scale)).collect();
-        let tree = bvh::build(&items, &COSTS);
-        let cost = bvh::sah_cost(&tree, &COSTS);
-        let extent = items.par_iter().map(|item| largest_coordinate(item.bounds)).reduce(|| 0.0, f32::max);
-        drop(items);
-
+        let sources = Sources { geometry, scale };
+        let items = (0..geometry.primitive_count()).into_par_iter().map(|index| sources.item(index));
+        let Tree { nodes, leaves, order, root: _, bounds, depth, cost } = bvh::build(items, &COSTS);
+        let extent = largest_coordinate(bounds);
+        let order = Order { order: &order, sources };
+        let [of_spheres, of_triangles, of_polygons] = &leaves;
         let mut this = Self {
-            nodes: tree.nodes,
-            spheres: Vec::new(),
-            triangles: Vec::new(),
+            nodes,
+            spheres: of_spheres.par_iter().map(|&leaf| order.spheres(leaf)).collect(),
+            triangles: of_triangles.par_iter().map(|&leaf| order.triangles(leaf, extent)).collect(),
             polygons: Vec::new(),
             corners: Default::default(),
             polygon_normals: vec![DVec3::Z; geometry.polygons.len()],
             bends: geometry.polygons.iter().map(|polygon| (polygon.id.0, 0.0)).collect(),
             extent,
             shadowless: shadowless(scene),
-            depth: tree.depth,
+            depth,
             cost,
         };
-        let places: Vec<u32> = tree
-            .leaves
-            .iter()
-            .map(|leaf| {
-                let run = &tree.order[leaf.first as usize..][..leaf.count as usize];
-                this.add_leaf(leaf, run.iter().map(|&index| sources[index as usize]), geometry, scale)
-            })
-            .collect();
-        for child in this.nodes.iter_mut().flat_map(|node| &mut node.children) {
-            if let Unpacked::Leaf(kind, leaf) = child.unpack() {
-                *child = Child::leaf(kind, places[leaf as usize]);
-            }
+        if !of_polygons.is_empty() {
+            this.add_polygons(of_polygons, order);
         }
         this
     }
@@ -153,50 +143,27 @@ impl Hierarchy {
         }
     }
 
-    /// Appends what a leaf holds and returns the word that finds it.
-    fn add_leaf(
-        &mut self,
-        leaf: &Leaf,
-        sources: impl Iterator<Item = Source>,
-        geometry: &Geometry,
-        scale: Scale,
-    ) -> u32 {
-        let first = match leaf.kind {
-            Kind::Sphere => {
-                self.spheres.push(SphereBlock::EMPTY);
-                self.spheres.len() - 1
-            }
-            Kind::Triangle => {
-                self.triangles.push(TriangleBlock::EMPTY);
-                self.triangles.len() - 1
-            }
-            Kind::Polygon => self.polygons.len(),
-        };
-        for (lane, source) in sources.enumerate() {
-            match leaf.kind {
-                Kind::Sphere => {
-                    let sphere = geometry.spheres[source.index as usize];
-                    let (center, radius) = (scale.position(sphere.center), scale.length(sphere.radius));
-                    self.spheres[first].set(lane, center, radius, sphere.id.0);
+    /// Appends the polygons of all their leaves, and has the nodes say where each leaf's begin and how many they are.
+    fn add_polygons(&mut self, leaves: &[Leaf], order: Order<'_>) {
+        let words: Vec<u32> = leaves
+            .iter()
+            .map(|&leaf| {
+                let first = u32::try_from(self.polygons.len()).unwrap_or(u32::MAX);
+                for source in order.of(leaf, Kind::Polygon) {
+                    self.add_polygon(source, order.sources.geometry, order.sources.scale);
                 }
-                Kind::Triangle => {
-                    let triangle = geometry.triangles[source.index as usize];
-                    let vertices =
-                        triangle.vertices.map(|index| scale.position(geometry.vertices[index as usize]));
-                    self.triangles[first].set(lane, vertices, triangle.id.0, self.extent);
-                }
-                Kind::Polygon => self.add_polygon(source, geometry, scale),
+                first << COUNT_BITS | (leaf.count - 1)
+            })
+            .collect();
+        for child in self.nodes.iter_mut().flat_map(|node| &mut node.children) {
+            if let Unpacked::Leaf(Kind::Polygon, leaf) = child.unpack() {
+                *child = Child::leaf(Kind::Polygon, words[leaf as usize]);
             }
-        }
-        let first = u32::try_from(first).unwrap_or(u32::MAX);
-        match leaf.kind {
-            Kind::Polygon => first << COUNT_BITS | (leaf.count - 1),
-            Kind::Sphere | Kind::Triangle => first,
         }
     }
 
-    fn add_polygon(&mut self, source: Source, geometry: &Geometry, scale: Scale) {
-        let polygon = &geometry.polygons[source.index as usize];
+    fn add_polygon(&mut self, source: usize, geometry: &Geometry, scale: Scale) {
+        let polygon = &geometry.polygons[source];
         let corners: Vec<Vec3> =
             polygon.vertices.clone().map(|index| scale.position(geometry.vertices[index as usize])).collect();
         let first = self.corners[0].len();
@@ -207,10 +174,10 @@ impl Hierarchy {
         let wide: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
         // What has no plane was left out of the scene.
         let normal = polygon_normal(&wide).unwrap_or(DVec3::Z);
-        self.polygon_normals[source.index as usize] = normal;
+        self.polygon_normals[source] = normal;
         let heights = wide.iter().map(|&corner| normal.dot(corner - wide[0]).abs());
         let bend = heights.fold(0.0, f64::max);
-        self.bends[source.index as usize].1 = bend;
+        self.bends[source].1 = bend;
         let bounds = bounds_of(&corners);
         let size = (bounds.high - bounds.low).length();
         let next = corners.iter().cycle().skip(1);
@@ -224,7 +191,7 @@ impl Hierarchy {
             id: polygon.id.0,
             first_corner: u32::try_from(first).unwrap_or(u32::MAX),
             edges: polygon.vertices.end - polygon.vertices.start,
-            source: source.index,
+            source: u32::try_from(source).unwrap_or(u32::MAX),
         });
     }
 }
@@ -244,53 +211,9 @@ impl HierarchyBytes {
     }
 }
 
-/// A primitive in its column of the scene's geometry.
-#[derive(Clone, Copy)]
-struct Source {
-    kind: Kind,
-    index: u32,
-}
-
-fn sources(geometry: &Geometry) -> Vec<Source> {
-    let run = |kind, count: usize| {
-        (0..count).map(move |index| Source { kind, index: u32::try_from(index).unwrap_or(u32::MAX) })
-    };
-    run(Kind::Sphere, geometry.spheres.len())
-        .chain(run(Kind::Triangle, geometry.triangles.len()))
-        .chain(run(Kind::Polygon, geometry.polygons.len()))
-        .collect()
-}
-
-impl Source {
-    fn item(self, geometry: &Geometry, scale: Scale) -> Item {
-        let index = self.index as usize;
-        let vertex = |index: u32| scale.position(geometry.vertices[index as usize]);
-        let (bounds, weight) = match self.kind {
-            Kind::Sphere => {
-                let sphere = geometry.spheres[index];
-                let (center, radius) = (scale.position(sphere.center), scale.length(sphere.radius));
-                // Rounded outward: the sum of centre and radius may round to the wrong side of the surface.
-                let low = (center - Vec3::splat(radius)).map(f32::next_down);
-                let high = (center + Vec3::splat(radius)).map(f32::next_up);
-                (Bounds { low, high }, 1)
-            }
-            Kind::Triangle => (bounds_of(&geometry.triangles[index].vertices.map(vertex)), 1),
-            Kind::Polygon => {
-                let corners: Vec<Vec3> = geometry.polygons[index].vertices.clone().map(vertex).collect();
-                (bounds_of(&corners), u16::try_from(corners.len()).unwrap_or(u16::MAX))
-            }
-        };
-        Item { bounds, kind: self.kind, weight }
-    }
-}
-
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is meant")]
 fn rounded(length: f64) -> f32 {
     length as f32
-}
-
-fn bounds_of(points: &[Vec3]) -> Bounds {
-    points.iter().fold(Bounds::EMPTY, |bounds, &point| bounds.union(Bounds { low: point, high: point }))
 }
 
 fn largest_coordinate(bounds: Bounds) -> f32 {
@@ -298,12 +221,15 @@ fn largest_coordinate(bounds: Bounds) -> f32 {
 }
 
 fn shadowless(scene: &Scene) -> Vec<bool> {
+    let mut shadowless = Vec::new();
+    if scene.materials.iter().all(|material| material.casts_shadow) {
+        return shadowless;
+    }
     let ids = scene
         .geometry
         .materials()
         .filter(|(_, material)| !scene.materials[material.0 as usize].casts_shadow)
         .map(|(id, _)| id.0 as usize);
-    let mut shadowless = Vec::new();
     for id in ids {
         if shadowless.len() <= id {
             shadowless.resize(id + 1, false);

@@ -10,6 +10,7 @@ mod directory;
 mod hierarchy;
 mod plan;
 mod scale;
+mod sources;
 mod view;
 
 pub(crate) use blocks::BLOCK;

@@ -1,24 +1,13 @@
 //! The binary tree: parted top down, weighed bottom up.
 
-use super::choice::{Choices, LeastCosts, weigh};
-use super::group::Spread;
-use super::split::{halve, part};
-use super::{Bounds, Costs, DEPTH_LIMIT, Item, Kind, word};
-use rayon::prelude::*;
+use super::choice::{Choices, LeastCosts, weigh, weigh_pair};
+use super::group::{Group, Spread};
+use super::reference::Reference;
+use super::split::{Halves, halve, part};
+use super::{Bounds, Costs, DEPTH_LIMIT, word};
 
 /// Above so many items the two halves are built in parallel.
 const PARALLEL: usize = 4096;
-
-/// An item on its way into place.
-#[derive(Clone, Copy)]
-pub(super) struct Reference {
-    pub(super) bounds: Bounds,
-    pub(super) index: u32,
-    pub(super) weight: u16,
-    pub(super) kind: Kind,
-}
-
-const _: () = assert!(size_of::<Reference>() == 32);
 
 /// A place where a group of items parts in two. A group of n items parts in at most n − 1 places, itself and those within
 /// its halves, so the places of every group are known before it is built: its own first, then those of the left half, then
@@ -42,42 +31,60 @@ pub(super) struct BinaryTree {
     pub(super) forks: Vec<Fork>,
 }
 
-pub(super) fn build(items: &[Item], costs: &Costs) -> BinaryTree {
-    let references = items.par_iter().enumerate().map(|(index, item)| {
-        let &Item { bounds, kind, weight } = item;
-        Reference { bounds, index: word(index), weight: weight.max(1), kind }
-    });
-    let mut references: Vec<Reference> = references.collect();
+pub(super) fn build(mut references: Vec<Reference>, costs: &Costs) -> BinaryTree {
     let mut forks = vec![Fork::UNUSED; references.len().saturating_sub(1)];
     if !references.is_empty() {
-        grow(&mut references, &mut forks, 0, costs);
+        let spread = Spread::of(&references);
+        grow(&mut references, &mut forks, &spread, 0, costs);
     }
     BinaryTree { references, forks }
 }
 
 /// Parts a group that is not empty down to single items, and returns what it costs.
-fn grow(references: &mut [Reference], forks: &mut [Fork], depth: u32, costs: &Costs) -> LeastCosts {
-    let spread = Spread::of(references);
+fn grow(
+    references: &mut [Reference],
+    forks: &mut [Fork],
+    spread: &Spread,
+    depth: u32,
+    costs: &Costs,
+) -> LeastCosts {
+    let Some((fork, forks)) = forks.split_first_mut() else {
+        return LeastCosts::of_leaf(single(&references[0], costs));
+    };
     let bounds = spread.group.bounds();
-    // More than 0, so that nodes and leaves count where boxes have no area.
-    let area = bounds.half_area().max(f64::MIN_POSITIVE);
+    let area = area_of(bounds);
     let fits = references.len() <= costs.largest_leaf.max(1) as usize && spread.group.is_of_one_kind();
     let as_leaf = if fits { area * f64::from(costs.of_weights(spread.group.weights)) } else { f64::INFINITY };
-    let Some((fork, forks)) = forks.split_first_mut() else { return LeastCosts::of_leaf(as_leaf) };
+    let as_node = area * f64::from(costs.node);
     let deep = is_deep(depth, references.len());
-    let middle = if deep { halve(references, &spread) } else { part(references, &spread, costs) };
+    if let ([one, other], false) = (&*references, deep) {
+        let (least_costs, choices) = weigh_pair(single(one, costs), single(other, costs), as_leaf, as_node);
+        *fork = Fork { bounds, left: 1, choices };
+        return least_costs;
+    }
+    let halves = if deep { halve(references, spread) } else { part(references, spread, costs) };
+    let Halves { middle, .. } = halves;
     debug_assert!((1..references.len()).contains(&middle));
     let parallel = references.len() >= PARALLEL;
     let (left, right) = references.split_at_mut(middle);
     let (left_forks, right_forks) = forks.split_at_mut(middle - 1);
-    let mut grow_left = || grow(left, left_forks, depth + 1, costs);
-    let mut grow_right = || grow(right, right_forks, depth + 1, costs);
+    let mut grow_left = || grow(left, left_forks, &halves.left, depth + 1, costs);
+    let mut grow_right = || grow(right, right_forks, &halves.right, depth + 1, costs);
     let (left_costs, right_costs) =
         if parallel { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
-    let as_node = area * f64::from(costs.node);
     let (least_costs, choices) = weigh(&left_costs, &right_costs, as_leaf, as_node);
     *fork = Fork { bounds, left: word(middle), choices };
     least_costs
+}
+
+/// More than 0, so that nodes and leaves count where boxes have no area.
+fn area_of(bounds: Bounds) -> f64 {
+    bounds.half_area().max(f64::MIN_POSITIVE)
+}
+
+/// What a leaf of one item costs.
+fn single(item: &Reference, costs: &Costs) -> f64 {
+    area_of(item.bounds()) * f64::from(costs.of_weights(Group::of(item).weights))
 }
 
 /// Whether the forks below `depth` others must halve from here on to stay within the limit: a cut may leave all items but
@@ -89,7 +96,8 @@ fn is_deep(depth: u32, count: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{collapse::collapse, sah_cost};
+    use super::super::collapse::collapse;
+    use super::super::{Item, Kind};
     use super::*;
     use glam::Vec3;
 
@@ -101,11 +109,12 @@ mod tests {
             let low = Vec3::new(f32::from(index % 7), f32::from(index % 11), f32::from(index % 13));
             Item { bounds: Bounds { low, high: low + 0.3 }, kind, weight: index % 5 }
         });
-        let items: Vec<Item> = items.collect();
-        let mut tree = build(&items, &costs);
+        let items = (0..).zip(items).map(|(index, item)| Reference::new(index, item));
+        let mut tree = build(items.collect(), &costs);
         let bounds = tree.forks[0].bounds;
-        let promised = grow(&mut tree.references, &mut tree.forks, 0, &costs).as_one_child();
-        let cost = sah_cost(&collapse(&tree), &costs) * bounds.half_area();
+        let spread = Spread::of(&tree.references);
+        let promised = grow(&mut tree.references, &mut tree.forks, &spread, 0, &costs).as_one_child();
+        let cost = collapse(tree, &costs).cost * bounds.half_area();
         assert!((cost / promised - 1.0).abs() < 1e-12, "{cost}, promised {promised}");
     }
 }

@@ -8,7 +8,7 @@
 //! - as one child: C₁ = min(area · cost of the leaf, area · cost of visiting a node + D₈)
 //! - as up to i children: Cᵢ = min(Dᵢ, Cᵢ₋₁)
 
-use super::{WIDTH, word};
+use super::WIDTH;
 
 /// What a group costs as up to 1, 2, … 7 children of a node.
 pub(super) struct LeastCosts([f64; WIDTH - 1]);
@@ -37,8 +37,9 @@ impl Choices {
         (self.0 >> (4 * (children - 2)) & 15) as usize
     }
 
-    fn set_left_of(&mut self, children: usize, left: usize) {
-        self.0 |= word(left) << (4 * (children - 2));
+    #[expect(clippy::cast_possible_truncation, reason = "at most 8")]
+    fn set_left_of(&mut self, children: usize, left: u64) {
+        self.0 |= (left as u32) << (4 * (children - 2));
     }
 
     fn set_leaf(&mut self) {
@@ -51,6 +52,24 @@ impl Choices {
     }
 }
 
+/// Of two halves that do not part: it makes no difference over how many children they might spread.
+pub(super) fn weigh_pair(left: f64, right: f64, as_leaf: f64, as_node: f64) -> (LeastCosts, Choices) {
+    let mut choices = Choices::NONE;
+    let apart = left + right;
+    choices.set_left_of(WIDTH, 1);
+    let mut cost = as_node + apart;
+    if as_leaf <= cost {
+        choices.set_leaf();
+        cost = as_leaf;
+    }
+    let mut least = LeastCosts::of_leaf(cost);
+    if apart < cost {
+        choices.set_left_of(2, 1);
+        least.0[1..].fill(apart);
+    }
+    (least, choices)
+}
+
 /// The cheapest ways for a group, from those of its halves, from what it costs as a leaf, infinity if it may not be one, and
 /// from what visiting it as a node costs.
 pub(super) fn weigh(
@@ -60,33 +79,40 @@ pub(super) fn weigh(
     as_node: f64,
 ) -> (LeastCosts, Choices) {
     let mut choices = Choices::NONE;
-    let (below, to_left) = cheapest_over(WIDTH, left, right);
-    choices.set_left_of(WIDTH, to_left);
-    let mut cost = as_node + below;
+    let (spreads, to_left) = cheapest_over_each(left, right);
+    choices.set_left_of(WIDTH, to_left[WIDTH - 1]);
+    let mut cost = as_node + spreads[WIDTH - 1];
     if as_leaf <= cost {
         choices.set_leaf();
         cost = as_leaf;
     }
     let mut least = LeastCosts::of_leaf(cost);
-    for (children, least) in (2..).zip(&mut least.0[1..]) {
-        let (spread, to_left) = cheapest_over(children, left, right);
-        if spread < cost {
-            choices.set_left_of(children, to_left);
-            cost = spread;
-        }
-        *least = cost;
+    for children in 2..WIDTH {
+        let spread = spreads[children - 1];
+        // Without a branch, which nothing could foresee.
+        let is_less = spread < cost;
+        choices.set_left_of(children, u64::from(is_less) * to_left[children - 1]);
+        cost = if is_less { spread } else { cost };
+        least.0[children - 1] = cost;
     }
     (least, choices)
 }
 
-/// The least cost of a group as `children`, and how many of them are its left half.
-fn cheapest_over(children: usize, left: &LeastCosts, right: &LeastCosts) -> (f64, usize) {
-    let mut cheapest = (f64::INFINITY, 1);
-    for to_left in 1..children {
-        let cost = left.0[to_left - 1] + right.0[children - to_left - 1];
-        if cost < cheapest.0 {
-            cheapest = (cost, to_left);
+/// The least costs of a group as 1, 2, … 8 children, and how many of them are its left half. As one child it does not spread:
+/// that costs infinity.
+fn cheapest_over_each(left: &LeastCosts, right: &LeastCosts) -> ([f64; WIDTH], [u64; WIDTH]) {
+    // What no children cost the right half, infinity, then what 1, 2, … do.
+    let mut padded = [f64::INFINITY; 2 * WIDTH];
+    padded[WIDTH..2 * WIDTH - 1].copy_from_slice(&right.0);
+    let (mut costs, mut to_left) = ([f64::INFINITY; WIDTH], [1; WIDTH]);
+    for (count, &of_left) in (1..).zip(&left.0) {
+        let of_right = &padded[WIDTH - count..];
+        for lane in 0..WIDTH {
+            let cost = of_left + of_right[lane];
+            let is_less = cost < costs[lane];
+            costs[lane] = if is_less { cost } else { costs[lane] };
+            to_left[lane] = if is_less { count as u64 } else { to_left[lane] };
         }
     }
-    cheapest
+    (costs, to_left)
 }

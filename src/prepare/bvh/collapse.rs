@@ -1,7 +1,10 @@
 //! From the binary tree to nodes of eight children, as its choices say.
 
 use super::binary::{BinaryTree, Fork};
-use super::{Bounds, Child, Leaf, Node, Tree, WIDTH, word};
+use super::cost::of_tree;
+use super::reference::Reference;
+use super::{Bounds, Child, Costs, Kind, Leaf, Node, Tree, WIDTH, word};
+use rayon::prelude::*;
 
 /// A run of references and the first of its forks.
 #[derive(Clone, Copy)]
@@ -18,20 +21,37 @@ struct Children {
     count: usize,
 }
 
-pub(super) fn collapse(binary: &BinaryTree) -> Tree {
-    let order: Vec<u32> = binary.references.iter().map(|reference| reference.index).collect();
-    let all = Run { first: 0, count: order.len(), fork: 0 };
-    let tree = Tree { nodes: Vec::new(), leaves: Vec::new(), order, root: Child::EMPTY, depth: 0 };
-    let mut writer = Writer { binary, tree };
-    if all.count > 0 {
-        writer.tree.root = writer.write_node(all, 1);
+pub(super) fn collapse(binary: BinaryTree, costs: &Costs) -> Tree {
+    let count = binary.references.len();
+    let mut tree = Tree {
+        nodes: Vec::with_capacity(count / 8),
+        leaves: Default::default(),
+        order: Vec::new(),
+        root: Child::EMPTY,
+        bounds: Bounds::EMPTY,
+        depth: 0,
+        cost: 0.0,
+    };
+    if count > 0 {
+        let all = Run { first: 0, count, fork: 0 };
+        let mut writer = Writer { binary: &binary, costs, tree, children_cost: 0.0 };
+        let root = writer.write_node(all, 1);
+        let (bounds, children_cost) = (writer.bounds(all), writer.children_cost);
+        tree = writer.tree;
+        (tree.root, tree.bounds, tree.cost) = (root, bounds, of_tree(bounds, children_cost, costs));
     }
-    writer.tree
+    let BinaryTree { references, forks } = binary;
+    drop(forks);
+    tree.order = references.par_iter().map(Reference::index).collect();
+    tree
 }
 
 struct Writer<'a> {
     binary: &'a BinaryTree,
+    costs: &'a Costs,
     tree: Tree,
+    /// Sum of [`Costs::of_child`].
+    children_cost: f64,
 }
 
 impl Writer<'_> {
@@ -43,25 +63,29 @@ impl Writer<'_> {
         let mut children = Children::default();
         self.spread(run, WIDTH, &mut children);
         for (slot, run) in children.runs.into_iter().flatten().enumerate() {
+            let bounds = self.bounds(run);
             let child = if self.fork(run).is_none_or(|fork| fork.choices.is_leaf()) {
-                self.write_leaf(run)
+                let (child, kind, weight) = self.write_leaf(run);
+                self.children_cost += self.costs.of_child(bounds, Some((kind, weight)));
+                child
             } else {
+                self.children_cost += self.costs.of_child(bounds, None);
                 self.write_node(run, depth + 1)
             };
-            let bounds = self.bounds(run);
             self.tree.nodes[index].set(slot, bounds, child);
         }
         self.tree.nodes[index].set_orders();
         Child::inner(word(index))
     }
 
-    fn write_leaf(&mut self, run: Run) -> Child {
+    /// Returns the child, its kind and its weight.
+    fn write_leaf(&mut self, run: Run) -> (Child, Kind, u32) {
         let references = &self.binary.references[run.first..run.first + run.count];
-        let kind = references[0].kind;
-        let weight = references.iter().map(|reference| u32::from(reference.weight)).sum();
-        let index = word(self.tree.leaves.len());
-        self.tree.leaves.push(Leaf { kind, first: word(run.first), count: word(run.count), weight });
-        Child::leaf(kind, index)
+        let kind = references[0].kind();
+        let weight = references.iter().map(|reference| u32::from(reference.weight())).sum();
+        let leaves = &mut self.tree.leaves[kind as usize];
+        leaves.push(Leaf { first: word(run.first), count: word(run.count) });
+        (Child::leaf(kind, word(leaves.len() - 1)), kind, weight)
     }
 
     /// Spreads a run over up to `limit` children.
@@ -87,6 +111,6 @@ impl Writer<'_> {
     }
 
     fn bounds(&self, run: Run) -> Bounds {
-        self.fork(run).map_or_else(|| self.binary.references[run.first].bounds, |fork| fork.bounds)
+        self.fork(run).map_or_else(|| self.binary.references[run.first].bounds(), |fork| fork.bounds)
     }
 }

@@ -1,8 +1,9 @@
 //! What a tree costs: the surface area heuristic of Goldsmith and Salmon, "Automatic Creation of Object Hierarchies for
 //! Ray Tracing", 1987. A ray that meets the root meets a box within with the chance that is the ratio of their areas.
 
-use super::{Bounds, Kind, Leaf, Node, Tree, Unpacked, WIDTH};
+use super::{Bounds, Kind};
 use glam::Vec3A;
+use std::ops::Range;
 
 /// What the steps of a traversal cost, in any unit. Arrays go by [`Kind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,26 +24,35 @@ impl Costs {
         (weights / Vec3A::from(self.room)).ceil().dot(Vec3A::from(self.block))
     }
 
-    fn of_leaf(&self, leaf: &Leaf) -> f64 {
-        let blocks = (f64::from(leaf.weight) / f64::from(self.room[leaf.kind as usize])).ceil();
-        blocks * f64::from(self.block[leaf.kind as usize])
+    /// Likewise, of three groups, a lane a group; by kind, of which some have no weights.
+    #[inline(always)]
+    pub(super) fn of_lanes(&self, weights: &[Vec3A; Kind::COUNT], kinds: Range<usize>) -> Vec3A {
+        // A sum with 2²³ rounds to the nearest integer: sooner had than a ceiling. Weights are integers, so a number of blocks is
+        // above an integer by no less than 1 / room.
+        const INTEGERS: f32 = (1 << 23) as f32;
+        let of_kind = |kind: usize| {
+            let per_block = self.room[kind].recip();
+            let nearest = weights[kind] * per_block + (0.5 - 0.5 * per_block);
+            ((nearest + INTEGERS) - INTEGERS) * self.block[kind]
+        };
+        kinds.fold(Vec3A::ZERO, |all, kind| all + of_kind(kind))
+    }
+
+    /// Of testing a leaf of this weight.
+    fn of_leaf(&self, kind: Kind, weight: u32) -> f64 {
+        let blocks = (f64::from(weight) / f64::from(self.room[kind as usize])).ceil();
+        blocks * f64::from(self.block[kind as usize])
+    }
+
+    /// Of a child, to a ray that meets its parent's box, times that box's area.
+    pub(super) fn of_child(&self, bounds: Bounds, leaf: Option<(Kind, u32)>) -> f64 {
+        bounds.half_area() * leaf.map_or(f64::from(self.node), |(kind, weight)| self.of_leaf(kind, weight))
     }
 }
 
-/// What a random ray that meets the root's box is expected to cost; 0 for a tree of nothing.
-pub(crate) fn sah_cost(tree: &Tree, costs: &Costs) -> f64 {
-    let bounds_of = |node: &Node| (0..WIDTH).fold(Bounds::EMPTY, |all, slot| all.union(node.bounds(slot)));
-    let Some(root) = tree.nodes.first() else { return 0.0 };
-    let of_slot = |node: &Node, slot: usize| {
-        let cost = match node.children[slot].unpack() {
-            Unpacked::Empty => return 0.0,
-            Unpacked::Inner(_) => f64::from(costs.node),
-            Unpacked::Leaf(_, leaf) => costs.of_leaf(&tree.leaves[leaf as usize]),
-        };
-        node.bounds(slot).half_area() * cost
-    };
-    let below: f64 = tree.nodes.iter().flat_map(|node| (0..WIDTH).map(move |slot| of_slot(node, slot))).sum();
-    let area = bounds_of(root).half_area();
+/// What a random ray that meets the root's box is expected to cost, from the sum of [`Costs::of_child`].
+pub(super) fn of_tree(root: Bounds, children: f64, costs: &Costs) -> f64 {
+    let area = root.half_area();
     // Boxes without area are met by no random ray; the root itself is always looked at.
-    f64::from(costs.node) + if area > 0.0 { below / area } else { 0.0 }
+    f64::from(costs.node) + if area > 0.0 { children / area } else { 0.0 }
 }

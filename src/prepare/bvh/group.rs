@@ -1,12 +1,13 @@
 //! What is known of a group of items as a whole.
 
-use super::binary::Reference;
+use super::reference::Reference;
 use super::{Bounds, Kind};
 use glam::{Vec3A, Vec3Swizzles};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Items that one thread goes through at a time. Fixed, so that sums do not depend on the number of threads.
-const CHUNK: usize = 1 << 15;
+pub(super) const CHUNK: usize = 1 << 15;
 
 /// What some items cover, and what they weigh.
 #[derive(Clone, Copy)]
@@ -24,14 +25,10 @@ impl Group {
     pub(super) fn of(reference: &Reference) -> Self {
         const LANES: [Vec3A; Kind::COUNT] = [Vec3A::X, Vec3A::Y, Vec3A::Z];
         Self {
-            low: reference.bounds.low.into(),
-            high: reference.bounds.high.into(),
-            weights: LANES[reference.kind as usize] * f32::from(reference.weight),
+            low: reference.low(),
+            high: reference.high(),
+            weights: LANES[reference.kind() as usize] * f32::from(reference.weight()),
         }
-    }
-
-    pub(super) fn middle(&self) -> Vec3A {
-        0.5 * self.low + 0.5 * self.high
     }
 
     pub(super) fn union(self, other: Self) -> Self {
@@ -47,6 +44,16 @@ impl Group {
         self.weights.cmpgt(Vec3A::ZERO).bitmask().count_ones() == 1
     }
 
+    /// All kinds that there are, and none beside where there is but one.
+    pub(super) fn kinds(&self) -> Range<usize> {
+        match self.weights.cmpgt(Vec3A::ZERO).bitmask() {
+            0b001 => 0..1,
+            0b010 => 1..2,
+            0b100 => 2..3,
+            _ => 0..Kind::COUNT,
+        }
+    }
+
     pub(super) fn bounds(&self) -> Bounds {
         Bounds { low: self.low.into(), high: self.high.into() }
     }
@@ -58,56 +65,47 @@ impl Group {
     }
 }
 
-/// A group and the box of the middles of its items.
-#[derive(Clone)]
-pub(super) struct Spread {
-    pub(super) group: Group,
+/// A box of points.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
     pub(super) low: Vec3A,
     pub(super) high: Vec3A,
 }
 
-impl Spread {
-    const EMPTY: Self = Self { group: Group::EMPTY, low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
+impl Extent {
+    pub(super) const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
 
-    pub(super) fn of(references: &[Reference]) -> Self {
-        let add = |spread: &mut Self, references: &[Reference]| {
-            for reference in references {
-                let group = Group::of(reference);
-                let middle = group.middle();
-                spread.group = spread.group.union(group);
-                spread.low = spread.low.min(middle);
-                spread.high = spread.high.max(middle);
-            }
-        };
-        let join = |one: &mut Self, other: &Self| {
-            one.group = one.group.union(other.group);
-            one.low = one.low.min(other.low);
-            one.high = one.high.max(other.high);
-        };
-        in_chunks(references, &Self::EMPTY, add, join)
+    pub(super) fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 }
 
-/// Goes through many items in parallel and joins the results in the order of the items.
-#[inline]
-pub(super) fn in_chunks<T: Clone + Send + Sync>(
-    references: &[Reference],
-    empty: &T,
-    add: impl Fn(&mut T, &[Reference]) + Sync,
-    join: impl Fn(&mut T, &T),
-) -> T {
-    let mut all = empty.clone();
-    if references.len() <= CHUNK {
-        add(&mut all, references);
-        return all;
+/// A group and the box of the middles of its items.
+#[derive(Clone, Copy)]
+pub(super) struct Spread {
+    pub(super) group: Group,
+    pub(super) middles: Extent,
+}
+
+impl Spread {
+    const EMPTY: Self = Self { group: Group::EMPTY, middles: Extent::EMPTY };
+
+    pub(super) fn of(references: &[Reference]) -> Self {
+        if references.len() <= CHUNK {
+            return Self::of_chunk(references);
+        }
+        let chunks: Vec<Self> = references.par_chunks(CHUNK).map(Self::of_chunk).collect();
+        chunks.iter().fold(Self::EMPTY, |all, chunk| Self {
+            group: all.group.union(chunk.group),
+            middles: all.middles.union(chunk.middles),
+        })
     }
-    let chunks = references.par_chunks(CHUNK).map(|chunk| {
-        let mut part = empty.clone();
-        add(&mut part, chunk);
-        part
-    });
-    for part in chunks.collect::<Vec<T>>() {
-        join(&mut all, &part);
+
+    fn of_chunk(references: &[Reference]) -> Self {
+        references.iter().fold(Self::EMPTY, |all, reference| {
+            let middle = reference.middle();
+            let middles = Extent { low: middle, high: middle };
+            Self { group: all.group.union(Group::of(reference)), middles: all.middles.union(middles) }
+        })
     }
-    all
 }

@@ -1,26 +1,30 @@
 //! A bounding volume hierarchy of eight children a node, built for the least expected cost of a ray.
 //!
-//! [`binary`] parts the primitives top down by the binned surface area heuristic ([`split`]) and decides bottom up which
+//! [`binary`] parts the primitives top down by the binned surface area heuristic ([`split`], [`bins`]) and decides bottom up which
 //! parts become nodes and which leaves ([`choice`]); [`collapse`] writes these out.
 //!
 //! The tree is the same to the bit for any number of threads: what runs in parallel works on parts that depend on the
 //! primitives alone, and their results are put together in order.
 
 mod binary;
+mod bins;
 mod bounds;
 mod choice;
 mod collapse;
 mod cost;
 mod group;
 mod node;
+mod reference;
 mod split;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use bounds::Bounds;
 pub(crate) use cost::Costs;
-pub(crate) use cost::sah_cost;
 pub(crate) use node::{Child, Leaf, Node, Unpacked, WIDTH};
+
+use rayon::prelude::*;
+use reference::Reference;
 
 /// Which test a primitive takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,17 +52,22 @@ pub(crate) struct Item {
 /// a stack and goes on with one of them has at most `DEPTH_LIMIT · (WIDTH − 1) + 1` waiting.
 pub(crate) const DEPTH_LIMIT: u32 = 48;
 
-/// Nodes in depth-first order, each before those below it; leaves and primitives in the order of the same walk.
+/// Nodes in depth-first order, each before those below it; leaves of each kind and primitives in the order of the same walk.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tree {
     pub nodes: Vec<Node>,
-    pub leaves: Vec<Leaf>,
+    /// By [`Kind`].
+    pub leaves: [Vec<Leaf>; Kind::COUNT],
     /// The caller's indices, in the order of the leaves.
     pub order: Vec<u32>,
     /// The first node, or [`Child::EMPTY`] where there is no item.
     pub root: Child,
+    /// Of all items.
+    pub bounds: Bounds,
     /// Wide nodes on the longest way from the root to a leaf, the root included; at most [`DEPTH_LIMIT`].
     pub depth: u32,
+    /// What a random ray that meets the root's box is expected to cost; 0 for a tree of nothing.
+    pub cost: f64,
 }
 
 /// Builds on the threads of the current pool.
@@ -66,9 +75,11 @@ pub(crate) struct Tree {
 /// # Panics
 ///
 /// For more than [`Child::LIMIT`] items.
-pub(crate) fn build(items: &[Item], costs: &Costs) -> Tree {
-    assert!(items.len() <= Child::LIMIT as usize, "{} items are more than a tree can number", items.len());
-    collapse::collapse(&binary::build(items, costs))
+pub(crate) fn build(items: impl IndexedParallelIterator<Item = Item>, costs: &Costs) -> Tree {
+    let count = items.len();
+    assert!(count <= Child::LIMIT as usize, "{count} items are more than a tree can number");
+    let references = items.enumerate().map(|(index, item)| Reference::new(word(index), item)).collect();
+    collapse::collapse(binary::build(references, costs), costs)
 }
 
 /// An index or count of items; there are fewer than 2³⁰ of them.

@@ -116,7 +116,7 @@ pub(crate) enum Unpacked {
     Empty,
     /// Index into [`Tree::nodes`](super::Tree::nodes).
     Inner(u32),
-    /// Index into [`Tree::leaves`](super::Tree::leaves).
+    /// Index into the leaves of its kind, [`Tree::leaves`](super::Tree::leaves).
     Leaf(Kind, u32),
 }
 
@@ -161,11 +161,8 @@ impl Child {
 /// Primitives of one kind that are tested together: a run of [`Tree::order`](super::Tree::order).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Leaf {
-    pub kind: Kind,
     pub first: u32,
     pub count: u32,
-    /// Sum of the weights of its items.
-    pub weight: u32,
 }
 
 #[cfg(test)]

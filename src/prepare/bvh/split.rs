@@ -1,16 +1,31 @@
 //! Where to part a group of items: the binned surface area heuristic of Wald, "On Fast Construction of SAH-based Bounding
 //! Volume Hierarchies", 2007, along the three axes and also by kind.
 
-use super::binary::Reference;
-use super::group::{Group, Spread, in_chunks};
+use super::bins::{Bins, Places};
+use super::group::{Extent, Group, Spread};
+use super::reference::Reference;
 use super::{Costs, Kind};
-use glam::{IVec3, Vec3A};
+use glam::Vec3A;
 
-/// Reorders two or more items into two groups that are not empty, the cheapest pair that the bins tell apart, and returns
-/// the size of the first. Few items do not need many bins.
-pub(super) fn part(references: &mut [Reference], spread: &Spread, costs: &Costs) -> usize {
+/// A group parted in two: how many items the first half has, and what is known of both.
+pub(super) struct Halves {
+    pub(super) middle: usize,
+    pub(super) left: Spread,
+    pub(super) right: Spread,
+}
+
+impl Halves {
+    fn at(middle: usize, references: &[Reference]) -> Self {
+        let (left, right) = references.split_at(middle);
+        Self { middle, left: Spread::of(left), right: Spread::of(right) }
+    }
+}
+
+/// Reorders two or more items into two groups that are not empty, the cheapest pair that the bins tell apart. Few items do
+/// not need many bins.
+pub(super) fn part(references: &mut [Reference], spread: &Spread, costs: &Costs) -> Halves {
     match references.len() {
-        2 => 1,
+        2 => Halves::at(1, references),
         3..=6 => part_by_bins::<4>(references, spread, costs),
         7..=24 => part_by_bins::<8>(references, spread, costs),
         _ => part_by_bins::<16>(references, spread, costs),
@@ -18,139 +33,98 @@ pub(super) fn part(references: &mut [Reference], spread: &Spread, costs: &Costs)
 }
 
 /// Likewise, into two of the same size, or of sizes that differ by 1.
-pub(super) fn halve(references: &mut [Reference], spread: &Spread) -> usize {
+pub(super) fn halve(references: &mut [Reference], spread: &Spread) -> Halves {
     let half = references.len() / 2;
-    let extent = spread.high - spread.low;
+    let extent = spread.middles.high - spread.middles.low;
     if extent.max_element() > 0.0 {
         let axis = extent.max_position();
-        let along = |reference: &Reference| Group::of(reference).middle()[axis];
+        let along = |reference: &Reference| reference.middle_along(axis);
         references.select_nth_unstable_by(half, |one, other| along(one).total_cmp(&along(other)));
     }
-    half
+    Halves::at(half, references)
 }
 
-fn part_by_bins<const BINS: usize>(references: &mut [Reference], spread: &Spread, costs: &Costs) -> usize {
-    let places = Places::<BINS>::new(spread);
+fn part_by_bins<const BINS: usize>(references: &mut [Reference], spread: &Spread, costs: &Costs) -> Halves {
+    let places = Places::<BINS>::new(spread.middles);
+    let mut bins = Bins::empty();
+    bins.fill(&places, references);
     // The largest extent becomes 1, so that no area overflows.
     let scale = (spread.group.high - spread.group.low).max_element().recip().min(f32::MAX);
-    let cost = |group: &Group| group.half_area(scale) * costs.of_weights(group.weights);
-    let mut cheapest = Cut::NONE;
-    let mut cheapest_axis = 0;
-    for (axis, bins) in places.fill(references).iter().enumerate() {
-        let cut = Cut::cheapest(bins, cost);
-        if cut.cost < cheapest.cost {
-            (cheapest, cheapest_axis) = (cut, axis);
-        }
-    }
+    let cut = bins.cheapest_cut(spread, scale, costs);
     if !spread.group.is_of_one_kind() {
-        let cut = Cut::cheapest(&of_kinds(references), cost);
-        if cut.cost < cheapest.cost {
-            return partition(references, |reference| (reference.kind as usize) < cut.bin);
+        let (cost, kind) = cheapest_kinds(&of_kinds(references), scale, costs);
+        if cost < cut.cost {
+            let goes_left = |reference: &Reference| (reference.kind() as usize) < kind;
+            let (middle, ..) = partition(references, goes_left);
+            return Halves::at(middle, references);
         }
     }
-    if cheapest.bin == 0 {
+    if cut.bin == 0 {
         return halve(references, spread);
     }
-    // Nothing is at or beyond NaN: only the axis of the cut decides.
-    let mut start = Vec3A::NAN;
-    start[cheapest_axis] = cheapest.bin as f32;
-    partition(references, |reference| !places.of(&Group::of(reference)).cmpge(start).any())
+    let (place, start) = (places.along(cut.axis), cut.bin as f32);
+    let (middle, left, right) = partition(references, |reference| {
+        // Where the middles are so close together that a place is not a number, its bin is the first.
+        let goes_right = place(reference) >= start;
+        !goes_right
+    });
+    let [left_group, right_group] = bins.sides(&cut, spread.group.kinds());
+    Halves {
+        middle,
+        left: Spread { group: left_group, middles: left },
+        right: Spread { group: right_group, middles: right },
+    }
 }
 
-/// Moves the items that `goes_left` to the front, and returns how many. Every item is swapped, with itself or with one
-/// that goes right: that is sooner done than guessing which way each goes.
-fn partition(references: &mut [Reference], goes_left: impl Fn(&Reference) -> bool) -> usize {
+/// Moves the items that `goes_left` to the front, and returns how many, and the boxes of the middles on both sides. Every item
+/// is swapped, with itself or with one that goes right: that is sooner done than guessing which way each goes.
+fn partition(
+    references: &mut [Reference],
+    goes_left: impl Fn(&Reference) -> bool,
+) -> (usize, Extent, Extent) {
     let mut left = 0;
+    let (mut low, mut high) = ([Vec3A::INFINITY; 2], [Vec3A::NEG_INFINITY; 2]);
     for index in 0..references.len() {
-        let moves = goes_left(&references[index]);
-        references.swap(left, index);
+        let reference = references[index];
+        let moves = goes_left(&reference);
+        let middle = reference.middle();
+        let is_left = Vec3A::splat(f32::from(u8::from(moves))).cmpgt(Vec3A::ZERO);
+        low[0] = low[0].min(Vec3A::select(is_left, middle, Vec3A::INFINITY));
+        high[0] = high[0].max(Vec3A::select(is_left, middle, Vec3A::NEG_INFINITY));
+        low[1] = low[1].min(Vec3A::select(is_left, Vec3A::INFINITY, middle));
+        high[1] = high[1].max(Vec3A::select(is_left, Vec3A::NEG_INFINITY, middle));
+        references[index] = references[left];
+        references[left] = reference;
         left += usize::from(moves);
     }
-    left
-}
-
-/// Equal slices of the box of the middles, along each axis.
-struct Places<const BINS: usize> {
-    low: Vec3A,
-    per_length: Vec3A,
-}
-
-impl<const BINS: usize> Places<BINS> {
-    fn new(spread: &Spread) -> Self {
-        Self { low: spread.low, per_length: Vec3A::splat(BINS as f32) / (spread.high - spread.low) }
-    }
-
-    /// Place of the middle, in bins from the lowest one; NaN along an axis on which there is one place only.
-    fn of(&self, group: &Group) -> Vec3A {
-        (group.middle() - self.low) * self.per_length
-    }
-
-    /// The bin of each axis. The conversion saturates and takes NaN to 0.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few bins, counted from 0")]
-    fn bin(&self, group: &Group) -> [usize; 3] {
-        let bin = self.of(group).as_ivec3().min(IVec3::splat(BINS as i32 - 1));
-        [bin.x as usize, bin.y as usize, bin.z as usize]
-    }
-
-    /// What is in each bin of each axis.
-    fn fill(&self, references: &[Reference]) -> [[Group; BINS]; 3] {
-        let add = |axes: &mut [[Group; BINS]; 3], references: &[Reference]| {
-            for group in references.iter().map(Group::of) {
-                for (bins, bin) in axes.iter_mut().zip(self.bin(&group)) {
-                    bins[bin] = bins[bin].union(group);
-                }
-            }
-        };
-        let join = |axes: &mut [[Group; BINS]; 3], others: &[[Group; BINS]; 3]| {
-            for (bin, other) in axes.as_flattened_mut().iter_mut().zip(others.as_flattened()) {
-                *bin = bin.union(*other);
-            }
-        };
-        in_chunks(references, &[[Group::EMPTY; BINS]; 3], add, join)
-    }
+    (left, Extent { low: low[0], high: high[0] }, Extent { low: low[1], high: high[1] })
 }
 
 fn of_kinds(references: &[Reference]) -> [Group; Kind::COUNT] {
     let mut kinds = [Group::EMPTY; Kind::COUNT];
     for reference in references {
-        let kind = &mut kinds[reference.kind as usize];
+        let kind = &mut kinds[reference.kind() as usize];
         *kind = kind.union(Group::of(reference));
     }
     kinds
 }
 
-/// A way to part bins in two.
-struct Cut {
-    /// Sum over both sides of area times cost.
-    cost: f32,
-    /// What is before this bin goes left.
-    bin: usize,
-}
-
-impl Cut {
-    const NONE: Self = Self { cost: f32::INFINITY, bin: 0 };
-
-    /// [`Cut::NONE`] where all is in one bin.
-    fn cheapest<const BINS: usize>(bins: &[Group; BINS], cost: impl Fn(&Group) -> f32) -> Self {
-        let mut right_costs = [f32::INFINITY; BINS];
-        let mut right = Group::EMPTY;
-        for bin in (1..BINS).rev() {
-            right = right.union(bins[bin]);
-            if !right.is_empty() {
-                right_costs[bin] = cost(&right);
-            }
+/// The cost of the cheapest way to part kinds in two, and the first kind that goes right.
+fn cheapest_kinds(kinds: &[Group; Kind::COUNT], scale: f32, costs: &Costs) -> (f32, usize) {
+    let cost = |kinds: &[Group]| {
+        let group = kinds.iter().fold(Group::EMPTY, |all, kind| all.union(*kind));
+        if group.is_empty() {
+            f32::INFINITY
+        } else {
+            group.half_area(scale) * costs.of_weights(group.weights)
         }
-        let mut cheapest = Self::NONE;
-        let mut left = Group::EMPTY;
-        for bin in 1..BINS {
-            left = left.union(bins[bin - 1]);
-            if !left.is_empty() {
-                let cost = cost(&left) + right_costs[bin];
-                if cost < cheapest.cost {
-                    cheapest = Self { cost, bin };
-                }
-            }
+    };
+    let mut cheapest = (f32::INFINITY, 0);
+    for kind in 1..Kind::COUNT {
+        let cost = cost(&kinds[..kind]) + cost(&kinds[kind..]);
+        if cost < cheapest.0 {
+            cheapest = (cost, kind);
         }
-        cheapest
     }
+    cheapest
 }

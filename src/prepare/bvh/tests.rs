@@ -45,7 +45,8 @@ struct Walk<'a> {
     items: &'a [Item],
     costs: &'a Costs,
     nodes: u32,
-    leaves: u32,
+    /// By kind.
+    leaves: [u32; Kind::COUNT],
     placed: u32,
 }
 
@@ -73,26 +74,51 @@ impl Walk<'_> {
     }
 
     fn leaf(&mut self, kind: Kind, index: u32) -> Bounds {
-        assert_eq!(index, self.leaves, "leaves are not in the order of the walk");
-        self.leaves += 1;
-        let leaf = self.tree.leaves[index as usize];
-        assert_eq!((leaf.kind, leaf.first), (kind, self.placed));
+        assert_eq!(index, self.leaves[kind as usize], "leaves are not in the order of the walk");
+        self.leaves[kind as usize] += 1;
+        let leaf = self.tree.leaves[kind as usize][index as usize];
+        assert_eq!(leaf.first, self.placed);
         assert!((1..=self.costs.largest_leaf).contains(&leaf.count), "{} items", leaf.count);
         self.placed += leaf.count;
         let run = &self.tree.order[leaf.first as usize..self.placed as usize];
         let items = run.iter().map(|&index| self.items[index as usize]);
         assert!(items.clone().all(|item| item.kind == kind));
-        assert_eq!(items.clone().map(|item| u32::from(item.weight.max(1))).sum::<u32>(), leaf.weight);
         items.fold(Bounds::EMPTY, |all, item| all.union(item.bounds))
     }
 }
 
+/// What a random ray that meets the root's box is expected to cost, from the finished tree.
+fn sah_cost(tree: &Tree, items: &[Item], costs: &Costs) -> f64 {
+    let Some(root) = tree.nodes.first() else { return 0.0 };
+    let of_leaf = |kind: Kind, leaf: Leaf| {
+        let run = &tree.order[leaf.first as usize..][..leaf.count as usize];
+        let weight: u32 = run.iter().map(|&index| u32::from(items[index as usize].weight.max(1))).sum();
+        (f64::from(weight) / f64::from(costs.room[kind as usize])).ceil()
+            * f64::from(costs.block[kind as usize])
+    };
+    let of_slot = |node: &Node, slot: usize| {
+        let cost = match node.children[slot].unpack() {
+            Unpacked::Empty => return 0.0,
+            Unpacked::Inner(_) => f64::from(costs.node),
+            Unpacked::Leaf(kind, leaf) => of_leaf(kind, tree.leaves[kind as usize][leaf as usize]),
+        };
+        node.bounds(slot).half_area() * cost
+    };
+    let below: f64 = tree.nodes.iter().flat_map(|node| (0..WIDTH).map(move |slot| of_slot(node, slot))).sum();
+    let area = (0..WIDTH).fold(Bounds::EMPTY, |all, slot| all.union(root.bounds(slot))).half_area();
+    f64::from(costs.node) + if area > 0.0 { below / area } else { 0.0 }
+}
+
+fn built(items: &[Item], costs: &Costs) -> Tree {
+    build(items.par_iter().copied(), costs)
+}
+
 fn check(items: &[Item], costs: &Costs) -> Tree {
-    let tree = build(items, costs);
+    let tree = built(items, costs);
     let mut order = tree.order.clone();
     order.sort_unstable();
     assert!(order.into_iter().eq(0..word(items.len())), "an item is missing or there twice");
-    let mut walk = Walk { tree: &tree, items, costs, nodes: 0, leaves: 0, placed: 0 };
+    let mut walk = Walk { tree: &tree, items, costs, nodes: 0, leaves: [0; Kind::COUNT], placed: 0 };
     let depth = match tree.root.unpack() {
         Unpacked::Empty => 0,
         Unpacked::Inner(root) => walk.node(root).1,
@@ -100,8 +126,11 @@ fn check(items: &[Item], costs: &Costs) -> Tree {
     };
     assert_eq!(depth, tree.depth);
     assert!(depth <= DEPTH_LIMIT);
-    let reached = (walk.nodes as usize, walk.leaves as usize, walk.placed as usize);
-    assert_eq!(reached, (tree.nodes.len(), tree.leaves.len(), items.len()));
+    let reached = (walk.nodes as usize, walk.leaves.map(|count| count as usize), walk.placed as usize);
+    assert_eq!(reached, (tree.nodes.len(), tree.leaves.each_ref().map(Vec::len), items.len()));
+    assert_eq!(tree.bounds, items.iter().fold(Bounds::EMPTY, |all, item| all.union(item.bounds)));
+    let cost = sah_cost(&tree, items, costs);
+    assert!((tree.cost - cost).abs() <= 1e-9 * cost, "says that it costs {}, and costs {cost}", tree.cost);
     tree
 }
 
@@ -129,12 +158,12 @@ proptest! {
 #[test]
 fn trees_of_nothing_and_of_one_item() {
     let empty = check(&[], &COSTS);
-    assert_eq!((empty.root, empty.depth, sah_cost(&empty, &COSTS)), (Child::EMPTY, 0, 0.0));
+    assert_eq!((empty.root, empty.depth, empty.cost), (Child::EMPTY, 0, 0.0));
     let one = check(&[triangle(Vec3::ZERO, Vec3::ONE)], &COSTS);
     assert_eq!((one.nodes.len(), one.depth), (1, 1));
     assert_eq!(one.nodes[0].children[0].unpack(), Unpacked::Leaf(Kind::Triangle, 0));
     // One node and one block, which every ray meets.
-    assert_eq!(sah_cost(&one, &COSTS), 2.0);
+    assert_eq!(one.cost, 2.0);
 }
 
 #[test]
@@ -145,7 +174,7 @@ fn the_tree_is_the_same_for_any_number_of_threads() {
     }
     let trees = [1, 2, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let tree = pool.install(|| build(&items, &COSTS));
+        let tree = pool.install(|| built(&items, &COSTS));
         let planes = tree.nodes.iter().flat_map(|node| [node.low, node.high]);
         let bits: Vec<u32> = planes.flat_map(|planes| planes.concat()).map(f32::to_bits).collect();
         (bits, tree)
@@ -193,7 +222,7 @@ fn coordinates_may_be_flat_or_as_large_as_they_get() {
             triangle(place(item.bounds.low), place(item.bounds.high))
         };
         let tree = check(&scattered(1000, 0.1).into_iter().map(grown).collect::<Vec<_>>(), &COSTS);
-        assert!(sah_cost(&tree, &COSTS).is_finite());
+        assert!(tree.cost.is_finite());
     }
     let ends = [-f32::MAX, f32::MAX].map(|x| triangle(Vec3::splat(x), Vec3::splat(x)));
     check(&ends.repeat(100), &COSTS);
@@ -215,9 +244,9 @@ fn halved(items: &mut [(u32, Item)], tree: &mut Tree) -> (Bounds, Child) {
     let bounds = items.iter().fold(Bounds::EMPTY, |all, item| all.union(item.1.bounds));
     if items.len() <= COSTS.largest_leaf as usize {
         let (first, count) = (word(tree.order.len()), word(items.len()));
-        tree.leaves.push(Leaf { kind: Kind::Triangle, first, count, weight: count });
+        tree.leaves[Kind::Triangle as usize].push(Leaf { first, count });
         tree.order.extend(items.iter().map(|item| item.0));
-        return (bounds, Child::leaf(Kind::Triangle, word(tree.leaves.len() - 1)));
+        return (bounds, Child::leaf(Kind::Triangle, word(tree.leaves[Kind::Triangle as usize].len() - 1)));
     }
     let index = tree.nodes.len();
     tree.nodes.push(Node::EMPTY);
@@ -238,10 +267,18 @@ fn a_tree_costs_clearly_less_than_halving_by_count() {
         let place = |point: Vec3| 0.4 + 0.1 * point;
         triangle(place(item.bounds.low), place(item.bounds.high))
     }));
-    let cost = sah_cost(&check(&items, &COSTS), &COSTS);
-    let mut tree = Tree { nodes: vec![], leaves: vec![], order: vec![], root: Child::inner(0), depth: 0 };
-    halved(&mut (0..).zip(items).collect::<Vec<_>>(), &mut tree);
-    let of_halving = sah_cost(&tree, &COSTS);
+    let cost = check(&items, &COSTS).cost;
+    let mut tree = Tree {
+        nodes: vec![],
+        leaves: Default::default(),
+        order: vec![],
+        root: Child::inner(0),
+        bounds: Bounds::EMPTY,
+        depth: 0,
+        cost: 0.0,
+    };
+    halved(&mut (0..).zip(items.iter().copied()).collect::<Vec<_>>(), &mut tree);
+    let of_halving = sah_cost(&tree, &items, &COSTS);
     assert!(cost < 0.8 * of_halving, "{cost} against {of_halving}");
 }
 
@@ -253,7 +290,7 @@ fn what_costs_more_goes_into_smaller_leaves() {
         .collect();
     let fill = |costs: &Costs| {
         let tree = check(&polygons, costs);
-        polygons.len() as f64 / tree.leaves.len() as f64
+        polygons.len() as f64 / tree.leaves[Kind::Polygon as usize].len() as f64
     };
     let cheap = Costs { block: [0.01; 3], ..COSTS };
     assert!(fill(&COSTS) < fill(&cheap), "{} against {}", fill(&COSTS), fill(&cheap));
