@@ -1,66 +1,12 @@
 //! Which edges of a polygon rays that lie side by side have to do with: of a gear's hundred edges only those that are level with
-//! the rays' feet can be crossed, or pass so near to a foot that it is in doubt.
-//!
-//! Bounds of the numbers of all rays give bounds of how high each corner is above their feet, many corners at a time. Rounding
-//! is monotonic, so what each ray computes for itself lies within, and to leave out an edge that lies above all feet, or below
-//! all, leaves the crossing number of each as it is. After Reshetov, "Faster Ray Packets – Triangle Intersection through Vertex
-//! Culling", 2007, who culls triangles by planes of the packet's frustum.
+//! the rays' feet can be crossed, or pass so near to a foot that it is in doubt. To leave out an edge that lies above all feet,
+//! or below all, leaves the crossing number of each as it is.
 
-use crate::kernel::{RaySpace, UNIT_ROUNDOFF};
+use super::sight::{Bounds, SeenBounds, Sight};
 use crate::lanes::{Mask, RECORD, Single, least_of_each};
 
 /// Of polygons with fewer edges than this each edge is tested.
 pub(super) const MANY: u32 = 12;
-
-/// The least and the largest of a number over some rays.
-type Bounds = [f32; 2];
-
-/// What heights above the feet of some rays are computed from.
-pub(super) struct Sight {
-    /// Along the second and third axis of the rays' order.
-    origin: [Bounds; 2],
-    /// Where the start has a low part.
-    origin_low: Option<[Bounds; 2]>,
-    /// Of y over z.
-    shear: Bounds,
-}
-
-impl Sight {
-    /// That of the rays of a mask.
-    #[inline(always)]
-    pub(super) fn of<F: Single>(space: &RaySpace<F>, mask: F::Mask) -> Self {
-        let none = F::splat(f32::INFINITY);
-        let bounds_of = |lanes: [F; RECORD]| {
-            let [a, b, c, d, e, f, ..] = least_of_each(lanes.map(|lanes| F::select(mask, lanes, none)));
-            [[a, -b], [c, -d], [e, -f]]
-        };
-        let ([_, y, z], shear) = (space.origin, space.shear[1]);
-        let [y, z, shear] = bounds_of([y, -y, z, -z, shear, -shear, none, none]);
-        let origin_low = space.origin_low.map(|[_, y, z]| {
-            let [y, z, _] = bounds_of([y, -y, z, -z, none, none, none, none]);
-            [y, z]
-        });
-        Self { origin: [y, z], origin_low, shear }
-    }
-
-    /// Of corners in lanes, in the rays' order of axes, the least and the largest height above a foot and depth: see
-    /// [`RaySpace::see`].
-    #[inline(always)]
-    fn see<F: Single>(&self, y: F, z: F) -> [[F; 2]; 2] {
-        let from = |[least, largest]: [F; 2], origin: Bounds| {
-            [least - F::splat(origin[1]), largest - F::splat(origin[0])]
-        };
-        let (mut y, mut z) = (from([y, y], self.origin[0]), from([z, z], self.origin[1]));
-        if let Some([low_y, low_z]) = self.origin_low {
-            (y, z) = (from(y, low_y), from(z, low_z));
-        }
-        let [one, other] = self.shear.map(F::splat);
-        let products = [one * z[0], one * z[1], other * z[0], other * z[1]];
-        let [a, b, c, d] = products;
-        let (least, largest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-        [[y[0] - largest, y[1] - least], z]
-    }
-}
 
 /// Visits those edges of a polygon, by number, that any of the rays may have to do with, and returns the bounds of its corners
 /// along the third axis. `corners` are y and z in the rays' order of axes from the polygon's first corner on, its first again
@@ -81,15 +27,9 @@ pub(super) fn each_near<F: Single>(
         let (y, z) = (F::load(&y[first..]), F::load(&z[first..]));
         depths[0] = z.min(depths[0]);
         depths[1] = (-z).min(depths[1]);
-        let [[least, largest], depth] = sight.see(y, z);
-        // Several times as much as `unclear_area` allows for.
-        let doubt = match size {
-            Some(size) => {
-                let deepest = depth[0].abs().max(depth[1].abs());
-                F::splat(64.0 * UNIT_ROUNDOFF) * (deepest + F::splat(2.0 * size))
-            }
-            None => F::splat(0.0),
-        };
+        let seen = sight.see([y, y, z]);
+        let SeenBounds { y: [least, largest], .. } = seen;
+        let doubt = size.map_or(F::splat(0.0), |size| seen.doubt(F::splat(size)));
         // A corner level with a foot counts as above it.
         let (above, below) = (least.ge(doubt).bits(), largest.lt(-doubt).bits());
         let is_apart = (above & above >> 1) | (below & below >> 1);
@@ -107,7 +47,7 @@ pub(super) fn each_near<F: Single>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::unclear_area;
+    use crate::kernel::{RaySpace, UNIT_ROUNDOFF, unclear_area};
     use crate::lanes::{Job, Width};
     use crate::random::random_unit;
 

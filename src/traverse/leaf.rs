@@ -1,8 +1,9 @@
 //! What is in a leaf against rays in lanes: those of a packet that lie side by side, or those of a stream that a list names.
 
 use super::candidate::{self, Candidate, Start, View};
-use super::edges::{self, Sight};
+use super::edges;
 use super::exact::Spot;
+use super::sight::Sight;
 use super::{Counts, NOTHING};
 use crate::kernel::polygon::Outline;
 use crate::kernel::sphere::Line;
@@ -51,11 +52,11 @@ pub(super) trait RayLanes<F: Single> {
     }
 }
 
-/// Tests what is in a leaf against the lanes of a mask, `used` of them.
+/// Tests what is in a leaf against the lanes of a mask, `used` of them. Of triangles those whose bits are set in `in_sight`.
 #[inline(always)]
 pub(super) fn visit<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
-    leaf: Place,
+    (leaf, in_sight): (Place, u32),
     rays: &mut R,
     (mask, used): (F::Mask, usize),
     counts: &mut Counts,
@@ -63,7 +64,7 @@ pub(super) fn visit<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY:
     match leaf {
         Place::Node(_) => {}
         Place::Triangles(index) => {
-            triangles::<F, R, DEPARTING, ANY>(hierarchy, index, rays, (mask, used), counts);
+            triangles::<F, R, DEPARTING, ANY>(hierarchy, (index, in_sight), rays, (mask, used), counts);
         }
         Place::Spheres(index) => {
             spheres::<F, R, DEPARTING, ANY>(hierarchy, index, rays, (mask, used), counts);
@@ -86,7 +87,7 @@ fn asked<const ANY: bool>(hierarchy: &Hierarchy, ids: &[u32; BLOCK]) -> impl Ite
 #[inline(always)]
 fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
-    index: usize,
+    (index, in_sight): (usize, u32),
     rays: &mut R,
     (mask, used): (F::Mask, usize),
     counts: &mut Counts,
@@ -94,7 +95,7 @@ fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     let block = &hierarchy.triangles[index];
     let (space, padding) = (rays.space::<DEPARTING>(), rays.padding());
     let [x, y, z] = rays.axes();
-    for (lane, id) in asked::<ANY>(hierarchy, &block.ids) {
+    for (lane, id) in asked::<ANY>(hierarchy, &block.ids).filter(|(lane, _)| in_sight >> lane & 1 == 1) {
         let [a, b, c] = &block.vertices;
         let corner =
             |of: &[[f32; BLOCK]; 3]| [F::splat(of[x][lane]), F::splat(of[y][lane]), F::splat(of[z][lane])];

@@ -10,6 +10,7 @@
 //! - `leaf`: what is in a leaf against rays in lanes, for packets and streams
 //! - `child`: the box of a child against rays in lanes, likewise
 //! - `edges`: which edges of a polygon rays that lie side by side have to do with
+//! - `sight`: bounds of what several rays see, for `edges` and for triangles that packets miss
 //! - `terms`: what the tests need of a ray beside origin and direction, for streams and rays alone
 //! - `coherence`, `regroup`: which rays are alike, and how others are put together
 //!
@@ -26,6 +27,7 @@ mod in_plane;
 mod leaf;
 mod packet;
 mod regroup;
+mod sight;
 mod single;
 mod stream;
 mod terms;

@@ -3,13 +3,14 @@
 use super::super::candidate::Candidate;
 use super::super::exact::{self, Nearest, Spot};
 use super::super::leaf::{self, RayLanes};
+use super::super::sight::{SeenBounds, Sight};
 use super::super::{Counts, DEAD};
 use super::{Columns, PACKET, Packet};
 use crate::kernel::RaySpace;
 use crate::kernel::sphere::Line;
 use crate::lanes::{Lanes, Mask, Single};
 use crate::prepare::bvh::Node;
-use crate::prepare::{Hierarchy, Place};
+use crate::prepare::{BLOCK, Hierarchy, Place, TriangleBlock};
 
 impl Packet {
     /// Tests what is in a leaf, against every group from the given one on whose rays meet its box.
@@ -22,6 +23,16 @@ impl Packet {
         (first_group, mask): (u8, F::Mask),
         counts: &mut Counts,
     ) {
+        let in_sight = match (leaf, &self.sight) {
+            (Place::Triangles(index), Some(sight)) if !DEPARTING => {
+                self.in_sight::<F>(sight, &hierarchy.triangles[index])
+            }
+            _ => !0,
+        };
+        if in_sight == 0 {
+            return;
+        }
+        let leaf = (leaf, in_sight);
         let mut group = first_group;
         let mut mask = mask;
         loop {
@@ -50,6 +61,37 @@ impl Packet {
             }
             mask = self.group_enters::<F>(node, slot, group, counts);
         }
+    }
+
+    /// The triangles of a block that some ray may meet, a bit each: all but those with all corners on one side of all feet, or
+    /// behind the start.
+    ///
+    /// That is what each ray's own test would find. Its areas have the right sign or are 0 for the corners as it sees them, and
+    /// then each edge that it crosses is on the same side, so it crosses none or two. (That needs products of coordinates that
+    /// do not vanish; these are above 2⁻⁸⁹ unless corners and starts agree in more digits than f32 has at the scene's size.)
+    #[inline(always)]
+    fn in_sight<F: Single>(&self, sight: &Sight, block: &TriangleBlock) -> u32 {
+        (0..BLOCK)
+            .step_by(F::Block::WIDTH)
+            .fold(0, |bits, lane| bits | self.lanes_in_sight::<F::Block>(sight, block, lane) << lane)
+    }
+
+    #[inline(always)]
+    fn lanes_in_sight<L: Single>(&self, sight: &Sight, block: &TriangleBlock, lane: usize) -> u32 {
+        let zero = L::splat(0.0);
+        let all = L::first(L::WIDTH);
+        let (mut left, mut right, mut above, mut below, mut behind) = (all, all, all, all, all);
+        for corner in &block.vertices {
+            let SeenBounds { x, y, z } = sight.see(self.axes.map(|axis| L::load(&corner[axis][lane..])));
+            left = left & x[1].lt(zero);
+            right = right & x[0].gt(zero);
+            below = below & y[1].lt(zero);
+            // A corner level with a foot counts as above it.
+            above = above & y[0].ge(zero);
+            let is_behind = if self.backwards[self.axes[2]] { z[0].gt(zero) } else { z[1].lt(zero) };
+            behind = behind & is_behind;
+        }
+        !(left | right | above | below | behind).bits() & ((1 << L::WIDTH) - 1)
     }
 
     /// Takes hits in where they are nearer than what was found so far or, if ANY, before the end. See [`exact`] for those

@@ -11,6 +11,7 @@ mod leaf;
 
 use super::coherence::{WIDEST_SLOPES, common_order};
 use super::exact::Spot;
+use super::sight::Sight;
 use super::{Counts, DEAD, Ends, Rays, child};
 use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
 use crate::lanes::{Lanes, Mask, RECORD, Single, Vector, least_of_each};
@@ -55,6 +56,8 @@ pub(super) struct Packet {
     /// Whether the directions' components are negative, the same for all.
     backwards: [bool; 3],
     hull: Hull,
+    /// What all of them see, if they start at one point and not on a primitive.
+    sight: Option<Sight>,
     count: usize,
     /// Whether a hit was taken in since the hull was made.
     is_changed: bool,
@@ -111,6 +114,7 @@ impl Packet {
             axes: [0, 1, 2],
             backwards: [false; 3],
             hull: Hull::default(),
+            sight: None,
             count: 0,
             is_changed: false,
         }
@@ -170,6 +174,13 @@ impl Packet {
             self.t_min.copy_from_slice(&rays.t_min[run]);
         }
         self.derive::<F>(hierarchy);
+        let has_one_origin = rays.departure.is_empty() && self.has_one_origin::<F>();
+        self.pad::<F>(hierarchy, has_one_origin);
+        self.sight = has_one_origin.then(|| Sight {
+            origin: axes.map(|axis| [self.origin[axis][0]; 2]),
+            origin_low: None,
+            shear: [[x, -minus_x], [y, -minus_y]],
+        });
         true
     }
 
@@ -201,13 +212,11 @@ impl Packet {
         }
         let [x, y, z, minus_x, minus_y, minus_z, ..] = least_of_each(bounds);
         self.hull.inverse = [[x, -minus_x], [y, -minus_y], [z, -minus_z]];
-        self.pad::<F>(hierarchy);
     }
 
     /// Moves origins by as much as boxes are grown.
-    fn pad<F: Single>(&mut self, hierarchy: &Hierarchy) {
+    fn pad<F: Single>(&mut self, hierarchy: &Hierarchy, has_one_origin: bool) {
         let backwards = self.backwards;
-        let has_one_origin = self.has_one_origin::<F>();
         let mut bounds = [F::splat(f32::INFINITY); RECORD];
         for row in (0..PACKET).step_by(F::WIDTH) {
             let Vector { x, y, z } = self.origin.map_lanes::<F>(row);

@@ -219,7 +219,13 @@ impl Stream {
             if mask.any() {
                 let used = mask.bits().count_ones() as usize;
                 let mut rays = Listed::new(&mut self.rays, numbers, rays);
-                super::leaf::visit::<L, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
+                super::leaf::visit::<L, _, DEPARTING, ANY>(
+                    hierarchy,
+                    (leaf, !0),
+                    &mut rays,
+                    (mask, used),
+                    counts,
+                );
             }
         }
     }
