@@ -335,6 +335,7 @@ impl Packet {
         while bits != 0 {
             let slot = bits.trailing_zeros() as usize;
             bits &= bits - 1;
+            hierarchy.prefetch(node.children[slot]);
             #[expect(
                 clippy::cast_possible_truncation,
                 reason = "a slot is below 8, and nodes are numbered in 32 bits"
