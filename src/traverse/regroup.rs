@@ -7,7 +7,7 @@
 
 use super::stream::{CAPACITY, Class};
 use super::{RUN, Rays};
-use crate::lanes::{Lanes, RECORD, Record, Single};
+use crate::lanes::{Lanes, RECORD, Record, Single, prefetch};
 
 /// Rays that are parted by class at a time: as many as stay in the cache, and enough for long lists. Of 8192, 16,384 and
 /// 32,768 rays in an order the last were fastest on four scenes; 65,536 and 262,144 were slower when rays were also sorted in
@@ -31,6 +31,9 @@ pub(super) struct Incoming {
     cells: Vec<(u16, u32)>,
     moved: Vec<Record>,
 }
+
+/// So many rays before one is read, it is asked for.
+const AHEAD: usize = 48;
 
 /// Bits of a cell along each axis.
 const CELL_BITS: u32 = 5;
@@ -86,6 +89,17 @@ impl Incoming {
         self.rows.extend((first..first + count).map(word));
     }
 
+    /// Asks for what is known of the first rays of some places.
+    #[inline(always)]
+    pub(super) fn prefetch<const DEPARTING: bool>(&self, places: &[u32], count: usize) {
+        for &place in places.iter().take(count) {
+            prefetch::<1>(self.rays.as_ptr().wrapping_add(place as usize).cast());
+            if DEPARTING {
+                prefetch::<1>(self.departures.as_ptr().wrapping_add(place as usize).cast());
+            }
+        }
+    }
+
     /// Sorts all rays by the cells of their origins. They are moved, so that from then on what is read together lies together.
     pub(super) fn sort_by_origin(&mut self) {
         let (low, cells_per_length) = self.grid();
@@ -96,8 +110,12 @@ impl Incoming {
         let order = || self.cells.iter().map(|cell| cell.1 as usize);
         for records in [&mut self.rays, &mut self.departures] {
             if !records.is_empty() {
+                let ahead = |place: usize| self.cells[(place + AHEAD).min(self.cells.len() - 1)].1;
                 self.moved.clear();
-                self.moved.extend(order().map(|place| records[place]));
+                self.moved.extend(order().enumerate().map(|(at, place)| {
+                    prefetch::<1>(records.as_ptr().wrapping_add(ahead(at) as usize).cast());
+                    records[place]
+                }));
                 std::mem::swap(records, &mut self.moved);
             }
         }

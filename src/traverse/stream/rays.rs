@@ -55,6 +55,9 @@ pub(super) struct StreamRays {
     pub(super) nearest: Vec<Nearest>,
 }
 
+/// So many rays before one is taken in, what is known of it is asked for.
+const AHEAD: usize = 48;
+
 const END: usize = 7;
 const T_PER_Z: usize = 2;
 const T_MIN: usize = 3;
@@ -85,6 +88,7 @@ impl StreamRays {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         for first in (0..places.len()).step_by(L::WIDTH) {
             let place = |lane: usize| places[(first + lane).min(places.len() - 1)] as usize;
+            incoming.prefetch::<DEPARTING>(&places[(first + AHEAD).min(places.len())..], L::WIDTH);
             let [x, y, z, end, dx, dy, dz, t_min] = L::transposed(|lane| &incoming.rays[place(lane)]);
             let ray = [[x, y, z], [dx, dy, dz]];
             let terms = Terms::new(hierarchy.extent, ray, class.third, class.backwards);
