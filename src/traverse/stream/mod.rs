@@ -17,7 +17,7 @@ mod rays;
 
 use super::regroup::Incoming;
 use super::{Counts, Ends, child};
-use crate::lanes::{Lanes, Mask, Single};
+use crate::lanes::{Lanes, Mask, Single, prefetch};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
 use leaf::Listed;
@@ -39,6 +39,9 @@ const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
 
 /// Lists begin at multiples of this, and lanes may read and write so far beyond their ends.
 const GAP: usize = 16;
+
+/// So many rays before what is known of one is read or written, it is asked for.
+const AHEAD: usize = 48;
 
 /// Rays of one [`Class`], and who of them meets which nodes.
 pub(super) struct Stream {
@@ -89,6 +92,11 @@ impl Stream {
         self.rays.load::<F::Node, DEPARTING>(hierarchy, incoming, places, class);
         self.walk::<F, DEPARTING, ANY>(hierarchy, places.len(), counts);
         for (number, &place) in places.iter().enumerate() {
+            if let Some(&ahead) = places.get(number + AHEAD) {
+                let row = incoming.rows[ahead as usize] as usize;
+                prefetch::<1>(ends.t.as_ptr().wrapping_add(row).cast());
+                prefetch::<1>(ends.id.as_ptr().wrapping_add(row).cast());
+            }
             let row = incoming.rows[place as usize] as usize;
             let (t, id) = self.rays.end::<ANY>(hierarchy, number);
             ends.t[row] = t;

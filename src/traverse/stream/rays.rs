@@ -5,7 +5,7 @@ use super::super::regroup::Incoming;
 use super::super::single::Ray;
 use super::super::terms::Terms;
 use super::super::{DEAD, NOTHING, NOWHERE};
-use super::CAPACITY;
+use super::{AHEAD, CAPACITY};
 use crate::kernel::axes_from;
 use crate::kernel::bounds::Slabs;
 use crate::lanes::{RECORD, Record, Single, Vector};
@@ -54,9 +54,6 @@ pub(super) struct StreamRays {
     /// The nearest hit so far, or where hits end to be of interest.
     pub(super) nearest: Vec<Nearest>,
 }
-
-/// So many rays before one is taken in, what is known of it is asked for.
-const AHEAD: usize = 48;
 
 const END: usize = 7;
 const T_PER_Z: usize = 2;
