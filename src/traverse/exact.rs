@@ -85,10 +85,7 @@ impl Spot {
                 let face = &hierarchy.polygons[index];
                 let run = face.first_corner as usize..(face.first_corner + face.edges) as usize;
                 let corner = |corner| point([0, 1, 2].map(|axis| hierarchy.corners[axis][corner]));
-                Shape::Polygon {
-                    normal: hierarchy.polygon_normals[face.source as usize],
-                    corners: run.map(corner).collect(),
-                }
+                Shape::Polygon(run.map(corner).collect())
             }
         }
     }
@@ -98,7 +95,7 @@ impl Spot {
 enum Shape {
     Sphere { center: DVec3, radius: f64, id: u32 },
     Triangle([DVec3; 3]),
-    Polygon { normal: DVec3, corners: Vec<DVec3> },
+    Polygon(Vec<DVec3>),
 }
 
 /// The nearest hit of a ray so far, or where hits end to be of interest.
@@ -185,29 +182,32 @@ impl Line {
     /// asked as the kernels ask it: faces that share an edge decide that alike.
     #[cold]
     pub(super) fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
-        let beyond = |hit: Hit| {
-            let t = rounded(hit.t);
-            (hit.t > f64::from(self.t_min) && t > self.t_min).then_some(t)
-        };
-        let corners = match spot.shape(hierarchy) {
+        match spot.shape(hierarchy) {
             Shape::Sphere { center, radius, .. } => {
-                return self.sphere(center, radius).into_iter().find_map(beyond);
+                self.sphere(center, radius).into_iter().find_map(|hit| self.beyond_t_min(hit.t))
             }
-            Shape::Triangle(vertices) => vertices.to_vec(),
-            Shape::Polygon { corners, .. } => corners,
-        };
-        // Of a length that loses nothing: a start that is exactly in the plane is at height 0.
-        let normal = double_area(&corners);
-        let hit = self.plane(corners[0], normal, normal.length(), corners.iter().copied());
-        let outline = Outline::new(self.origin, self.direction, &corners);
-        let slack = TOUCHING * (extent_of(corners.into_iter()) + self.origin.abs().max_element());
+            Shape::Triangle(vertices) => self.meets_face_beyond(&vertices),
+            Shape::Polygon(corners) => self.meets_face_beyond(&corners),
+        }
+    }
+
+    fn meets_face_beyond(&self, corners: &[DVec3]) -> Option<f32> {
+        let t = self.face(corners).t;
+        let outline = Outline::new(self.origin, self.direction, corners);
+        let slack = TOUCHING * (extent_of(corners) + self.origin.abs().max_element());
         match outline.part_beyond(f64::from(self.t_min), slack) {
-            Part::StartsOn if outline.is_foot_inside() => beyond(hit),
+            Part::StartsOn if outline.is_foot_inside() => self.beyond_t_min(t),
             Part::StartsOn | Part::Passed => None,
             Part::Met(edge_t) => {
-                beyond(hit).or_else(|| beyond(Hit { t: edge_t, ..hit })).or(Some(self.t_min.next_up()))
+                self.beyond_t_min(t).or_else(|| self.beyond_t_min(edge_t)).or(Some(self.t_min.next_up()))
             }
         }
+    }
+
+    /// A t rounded, if hits are wanted there.
+    fn beyond_t_min(&self, t: f64) -> Option<f32> {
+        let t = rounded(t);
+        (t > self.t_min).then_some(t)
     }
 
     /// Where a ray that leaves a surface meets another. What the start touches, as far as f64 can tell and polygons are flat, it
@@ -215,6 +215,10 @@ impl Line {
     #[cold]
     pub(super) fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         let bend = hierarchy.bend(self.departure >> 1) + hierarchy.bend(spot.id(hierarchy));
+        let departs_to_face = |corners: &[DVec3]| {
+            let t = self.beyond_rounding(self.face(corners), 0.0, extent_of(corners), bend)?;
+            self.is_in(corners).then_some(t)
+        };
         match spot.shape(hierarchy) {
             Shape::Sphere { center, radius, .. } => {
                 let extent = center.abs().max_element() + radius;
@@ -222,16 +226,8 @@ impl Line {
                     .into_iter()
                     .find_map(|hit| self.beyond_rounding(hit, LEAST_COSINE, extent, bend))
             }
-            Shape::Triangle(vertices) => {
-                let extent = extent_of(vertices.into_iter());
-                let t = self.beyond_rounding(self.triangle(vertices), 0.0, extent, bend)?;
-                self.is_in(&vertices).then_some(t)
-            }
-            Shape::Polygon { normal, corners } => {
-                let extent = extent_of(corners.iter().copied());
-                let t = self.beyond_rounding(self.polygon(normal, &corners), 0.0, extent, bend)?;
-                self.is_in(&corners).then_some(t)
-            }
+            Shape::Triangle(vertices) => departs_to_face(&vertices),
+            Shape::Polygon(corners) => departs_to_face(&corners),
         }
     }
 
@@ -303,14 +299,14 @@ impl Line {
                 }
                 if (near.t - t).abs() <= (far.t - t).abs() { near } else { far }
             }
-            Shape::Triangle(vertices) => self.kept_beyond(self.triangle(vertices), t),
-            Shape::Polygon { normal, corners } => self.kept_beyond(self.polygon(normal, &corners), t),
+            Shape::Triangle(vertices) => self.kept_beyond(self.face(&vertices), t),
+            Shape::Polygon(corners) => self.kept_beyond(self.face(&corners), t),
         }
     }
 
     /// The t that was found for a face whose plane, by rounding, seems to be met before where hits are wanted: see [`Part::Met`].
     fn kept_beyond(&self, hit: Hit, t: f64) -> Hit {
-        if hit.t <= f64::from(self.t_min) { Hit { t, ..hit } } else { hit }
+        if self.beyond_t_min(hit.t).is_some() { hit } else { Hit { t, ..hit } }
     }
 
     /// Both roots of the quadratic, the nearer first; see `kernel::sphere`. That of smaller magnitude is taken from their
@@ -337,20 +333,14 @@ impl Line {
         roots.map(|t| Hit { t, cosine })
     }
 
-    /// Where the line meets the plane.
-    fn triangle(&self, vertices: [DVec3; 3]) -> Hit {
-        let [a, b, c] = vertices;
-        let normal = (b - a).cross(c - a);
-        self.plane(a, normal, normal.length(), vertices.into_iter())
-    }
-
-    fn polygon(&self, normal: DVec3, corners: &[DVec3]) -> Hit {
-        self.plane(corners[0], normal, 1.0, corners.iter().copied())
-    }
-
-    fn plane(&self, point: DVec3, normal: DVec3, length: f64, corners: impl Iterator<Item = DVec3>) -> Hit {
+    /// Where the line meets the plane of a face, by the one normal that every question to `exact` is answered with: seen
+    /// edge-on, another normal's last bit would be another t.
+    fn face(&self, corners: &[DVec3]) -> Hit {
+        let point = corners[0];
+        // Of a length that loses nothing: a start that is exactly in the plane is at height 0.
+        let normal = double_area(corners);
         let (mut low, mut high) = (point, point);
-        for corner in corners {
+        for &corner in corners {
             (low, high) = (low.min(corner), high.max(corner));
         }
         // No point of the face is before its box or beyond: what a plane seen nearly edge-on is kept between, and what keeps
@@ -366,7 +356,7 @@ impl Line {
         let t = normal.dot(point - self.origin) / slope;
         let t = if t <= leave { t } else { leave };
         let t = if t >= enter { t } else { enter };
-        Hit { t, cosine: slope.abs() / (length * self.direction.length()) }
+        Hit { t, cosine: slope.abs() / (normal.length() * self.direction.length()) }
     }
 }
 
@@ -385,8 +375,8 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-fn extent_of(points: impl Iterator<Item = DVec3>) -> f64 {
-    points.fold(0.0, |extent, point| {
+fn extent_of(points: &[DVec3]) -> f64 {
+    points.iter().fold(0.0, |extent, point| {
         let largest = point.abs().max_element();
         if largest > extent { largest } else { extent }
     })

@@ -87,3 +87,47 @@ fn what_is_nearest_does_not_depend_on_which_rays_walk_together() {
     }
     assert_eq!(in_packets, 6000 * 4 * 64);
 }
+
+/// Within the plane of a face, on points of a grid so that its normal may be exactly across the ray, what the plane says of t is
+/// anything between the face's ends: one t all the same, with a sphere between them in front of it or behind it for all.
+#[test]
+fn rays_within_the_plane_of_a_face_meet_it_at_one_t() {
+    let steps = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0)];
+    let mut edge_on = 0;
+    for seed in 0..2000 {
+        let random = &mut Random::new(seed);
+        let in_plane = |random: &mut Random, spread: f64| {
+            let step = |random: &mut Random| (random.between(-spread, spread)).round() / 4.0;
+            step(random) * steps[0] + step(random) * steps[1]
+        };
+        let origin = 2.0 * in_plane(random, 6.0);
+        let target = in_plane(random, 4.0);
+        if origin == target {
+            continue;
+        }
+        let mut geometry = Geometry::default();
+        let size = random.between(0.2, 0.9);
+        geometry.add_sphere(target.as_vec3(), single(0.1 * size), MaterialId(0)).unwrap();
+        let count = 4 + random.below(5);
+        let corners: Vec<Vec3> = (0..count)
+            .map(|at| {
+                let (sin, cos) = (std::f64::consts::TAU * at as f64 / count as f64).sin_cos();
+                let size = random.between(0.3, 1.0);
+                let [cos, sin] = [cos, sin].map(|side| (size * side * 4.0).round() / 4.0);
+                (target + cos * steps[0] + sin * steps[1]).as_vec3()
+            })
+            .collect();
+        if geometry.add_polygon(&corners, None, MaterialId(0)).is_err() {
+            continue;
+        }
+        let scene = scene_of(geometry);
+        let prepared = Prepared::new(&scene).unwrap();
+        let factor = f64::from(prepared.scale.factor());
+        let ray = Query::new(Sight::new(origin * factor, (target - origin) * factor));
+        edge_on += usize::from(ray.hits::<false>(&prepared.hierarchy).len() == 2);
+        for count in [1, 8, 64] {
+            assert_same_as_all(&prepared, &vec![ray; count], false);
+        }
+    }
+    assert!(edge_on > 100, "{edge_on} rays meet both");
+}
