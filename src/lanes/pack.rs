@@ -75,6 +75,7 @@ static CHOSEN: [[u32; 8]; 256] = {
 impl Packed for i32x8 {
     #[inline(always)]
     fn pack(self, bits: u32, to: &mut [u32]) {
+        // Through `Packing`, which asks where slices end, streams of diffuse rays took 1.06 times as long, 2026-11-23.
         let ids: u32x8 = bytemuck::cast(self);
         if cfg!(target_feature = "avx2") {
             let packed = ids.shuffle(u32x8::new(CHOSEN[bits as usize & 255]));

@@ -114,11 +114,7 @@ impl Walker {
         ends: &mut Ends<'_>,
         counts: &mut Counts,
     ) {
-        if rays.departure.is_empty() {
-            self.walk::<F, false, false>(hierarchy, rays, ends, counts);
-        } else {
-            self.walk::<F, true, false>(hierarchy, rays, ends, counts);
-        }
+        self.trace::<F, false>(hierarchy, rays, ends, counts);
     }
 
     /// Whether anything that casts a shadow is in the way of each ray.
@@ -129,10 +125,20 @@ impl Walker {
         ends: &mut Ends<'_>,
         counts: &mut Counts,
     ) {
+        self.trace::<F, true>(hierarchy, rays, ends, counts);
+    }
+
+    fn trace<F: Single, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
         if rays.departure.is_empty() {
-            self.walk::<F, false, true>(hierarchy, rays, ends, counts);
+            self.walk::<F, false, ANY>(hierarchy, rays, ends, counts);
         } else {
-            self.walk::<F, true, true>(hierarchy, rays, ends, counts);
+            self.walk::<F, true, ANY>(hierarchy, rays, ends, counts);
         }
     }
 

@@ -5,7 +5,7 @@
 //! are only parted by class, which takes a few ns a ray; to sort them by origin as well cost more than it gave, 2026-11. Only
 //! where they come in no order at all, and many of them, are they sorted by origin first.
 
-use super::stream::{CAPACITY, Class};
+use super::stream::{AHEAD, CAPACITY, Class};
 use super::{RUN, Rays};
 use crate::lanes::{Lanes, RECORD, Record, Single, prefetch};
 
@@ -31,9 +31,6 @@ pub(super) struct Incoming {
     cells: Vec<(u16, u32)>,
     moved: Vec<Record>,
 }
-
-/// So many rays before one is read, it is asked for.
-const AHEAD: usize = 48;
 
 /// Bits of a cell along each axis.
 const CELL_BITS: u32 = 5;

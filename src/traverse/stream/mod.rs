@@ -41,7 +41,7 @@ const STACK: usize = DEPTH_LIMIT as usize * (WIDTH - 1) + 2;
 const GAP: usize = 16;
 
 /// So many rays before what is known of one is read or written, it is asked for.
-const AHEAD: usize = 48;
+pub(super) const AHEAD: usize = 48;
 
 /// Rays of one [`Class`], and who of them meets which nodes.
 pub(super) struct Stream {
@@ -95,7 +95,9 @@ impl Stream {
             if let Some(&ahead) = places.get(number + AHEAD) {
                 let row = incoming.rows[ahead as usize] as usize;
                 prefetch::<1>(ends.t.as_ptr().wrapping_add(row).cast());
-                prefetch::<1>(ends.id.as_ptr().wrapping_add(row).cast());
+                if !ANY {
+                    prefetch::<1>(ends.id.as_ptr().wrapping_add(row).cast());
+                }
             }
             let row = incoming.rows[place as usize] as usize;
             let (t, id) = self.rays.end::<ANY>(hierarchy, number);
