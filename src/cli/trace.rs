@@ -12,7 +12,7 @@ use crate::reference::Tracer;
 use crate::render::RenderError;
 use crate::report::maybe;
 use crate::scene::Scene;
-use crate::trace::{self, Hits, Query, RayColumns, ReferenceRun, Run};
+use crate::trace::{self, Hits, Query, RayColumns, ReferenceRun, Run, TestsMade};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -73,6 +73,8 @@ struct Report {
     build_seconds: f64,
     /// None where the clock did not move.
     mrays_per_second: Option<Spread>,
+    /// What a pass of the wavefront engine took.
+    tests: Option<TestsMade>,
     /// Against the reference, if asked for.
     errors: Option<HitErrors>,
     machine: Machine,
@@ -103,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 
     arguments.engine.warn_of_unused_instructions(arguments.progress);
-    let Traced { hits, seconds, build_seconds, threads } = traced(arguments, &loaded.scene, &rays)?;
+    let Traced { hits, seconds, build_seconds, threads, tests } = traced(arguments, &loaded.scene, &rays)?;
     if let Some(prefix) = &arguments.hits {
         trace::write_hits(&hits, prefix).map_err(|(path, why)| Failure::Write { path, why })?;
     }
@@ -125,6 +127,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         threads,
         build_seconds,
         mrays_per_second: Spread::of(seconds.iter().map(mrays).collect(), Better::More),
+        tests,
         errors,
         machine: Machine::here_and_now(),
     };
@@ -152,6 +155,7 @@ struct Traced {
     seconds: Vec<f64>,
     build_seconds: f64,
     threads: usize,
+    tests: Option<TestsMade>,
 }
 
 fn traced(arguments: &Arguments, scene: &Scene, rays: &RaySet) -> Result<Traced, Failure> {
@@ -167,7 +171,7 @@ fn traced(arguments: &Arguments, scene: &Scene, rays: &RaySet) -> Result<Traced,
             let columns = RayColumns::new(&prepared, rays);
             let mut run = Run::new(&prepared, &columns, query);
             let seconds = timed(arguments, || run.pass(width, &pool));
-            Traced { hits: run.hits(), seconds, build_seconds, threads }
+            Traced { hits: run.hits(), seconds, build_seconds, threads, tests: run.tests() }
         }
         None => {
             let never = AtomicBool::new(false);
@@ -175,7 +179,7 @@ fn traced(arguments: &Arguments, scene: &Scene, rays: &RaySet) -> Result<Traced,
             let build_seconds = start.elapsed().as_secs_f64();
             let mut run = ReferenceRun::new(&tracer, rays, query);
             let seconds = timed(arguments, || run.pass(&pool));
-            Traced { hits: run.hits().clone(), seconds, build_seconds, threads }
+            Traced { hits: run.hits().clone(), seconds, build_seconds, threads, tests: None }
         }
     };
     Ok(traced)
@@ -217,6 +221,9 @@ impl Report {
             maybe(self.mrays_per_second.map(|rate| rate.best)),
             self.hits,
         );
+        if let Some(tests) = &self.tests {
+            text += &format!("\n{tests}");
+        }
         if let Some(errors) = &self.errors {
             text += &format!("\nagainst the f64 reference: {errors}");
         }

@@ -116,6 +116,11 @@ impl RayColumns {
         this
     }
 
+    /// Rows that were given.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
     /// As many rows as it takes to fill the last run.
     pub(crate) fn filled(&self) -> usize {
         self.t_max.len()

@@ -5,6 +5,7 @@
 //!
 //! - `columns`: rays as the wavefront engine reads them
 //! - `passes`: passes over all rays, timed
+//! - `tests_made`: what they took, counted
 //! - `files`: rays and hits as NPY arrays
 //! - `clearance`: a `t_min` for tracers that do not know where a ray starts
 
@@ -12,11 +13,13 @@ mod clearance;
 mod columns;
 mod files;
 mod passes;
+mod tests_made;
 
 pub use clearance::add_clearance;
 pub use columns::RayColumns;
 pub use files::{hit_files, ray_file, write_hits, write_rays};
 pub use passes::{ReferenceRun, Run};
+pub use tests_made::{KernelRuns, TestsMade};
 
 use crate::rays::RayKind;
 

@@ -1,7 +1,7 @@
 //! Passes over all rays, timed.
 
 use super::columns::{EndColumns, RayColumns};
-use super::{Hits, Query};
+use super::{Hits, Query, TestsMade};
 use crate::lanes::{self, Single, Width};
 use crate::prepare::Prepared;
 use crate::rays::RaySet;
@@ -56,6 +56,12 @@ impl<'a> Run<'a> {
     #[must_use]
     pub fn in_packets(&self) -> u64 {
         self.counts.in_packets
+    }
+
+    /// What the last pass took; none where there are no rays.
+    #[must_use]
+    pub fn tests(&self) -> Option<TestsMade> {
+        TestsMade::new(&self.counts, self.columns.count())
     }
 
     /// What the last pass found.

@@ -80,6 +80,13 @@ fn every_engine_finds_what_the_rays_hit() {
             let rate = &report["mrays_per_second"];
             assert!(rate["best"].as_f64().unwrap() >= rate["median"].as_f64().unwrap());
             assert_eq!(report["errors"]["false_hits"]["certain"], 0);
+            let tests = &report["tests"];
+            assert_eq!(tests.is_null(), engine == "reference");
+            for kind in ["boxes", "spheres", "triangles"].into_iter().filter(|_| engine != "reference") {
+                let [runs, lanes, in_use] =
+                    ["per_ray", "lanes", "in_use"].map(|key| tests[kind][key].as_f64().unwrap());
+                assert!(runs > 0.0 && 0.0 < in_use && in_use <= lanes, "{kind} of {engine}: {tests}");
+            }
 
             let t = column(&folder.file("out.t.npy"), "<f4", RAYS.len()).into_iter().map(f32::from_le_bytes);
             let id =
