@@ -203,9 +203,13 @@ impl Walker {
 /// in no order, since the more of them the more likely there are some that go the same way.
 pub(crate) fn batch(origin: [&[f32]; 3], threads: usize) -> usize {
     const MOST: usize = 1 << 20;
+    /// So many for each thread, where rays are enough: one that is done sooner takes another's.
+    const SHARES: usize = 4;
+    const LEAST: usize = WINDOW / 4;
     let count = origin[0].len();
     if regroup::is_local(origin, count) {
-        WINDOW
+        let shares = count.div_ceil(threads * WINDOW).max(if threads > 1 { SHARES } else { 1 });
+        count.div_ceil(threads * shares).clamp(LEAST, WINDOW).next_multiple_of(RUN)
     } else {
         count.div_ceil(threads).clamp(WINDOW, MOST).next_multiple_of(RUN)
     }
