@@ -19,7 +19,7 @@ mod wide_types;
 mod widths;
 
 pub use isa::Isa;
-pub(crate) use pack::Packing;
+pub(crate) use pack::{Arrangement, Packing};
 pub(crate) use prefetch::prefetch;
 pub(crate) use records::least_of_each;
 pub(crate) use vector::Vector;

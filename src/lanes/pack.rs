@@ -49,6 +49,41 @@ impl Packing {
     }
 }
 
+/// Which of eight numbers side by side are wanted, in an order that is not theirs. It is found once and serves any number of
+/// columns.
+#[derive(Clone, Copy)]
+pub(crate) struct Arrangement {
+    /// Those wanted, one after the other; then anything.
+    numbers: u32x8,
+    count: usize,
+}
+
+impl Arrangement {
+    /// `order` names the last `used` of them in 3 bits each, from bit 0 on; a number is wanted if its bit is set in `bits`.
+    #[inline(always)]
+    pub(crate) fn reversed(order: u32, used: usize, bits: u32) -> Self {
+        let places = (u32x8::splat(order) >> u32x8::new([21, 18, 15, 12, 9, 6, 3, 0])) & u32x8::splat(7);
+        let is_wanted = (u32x8::splat(bits) >> places) << u32x8::splat(31);
+        let wanted = is_wanted.to_bitmask() & (255 << (8 - used)) & 255;
+        let numbers = places.shuffle(u32x8::new(CHOSEN[wanted as usize]));
+        Self { numbers, count: wanted.count_ones() as usize }
+    }
+
+    /// How many are wanted.
+    #[inline(always)]
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Puts those that are wanted where `to` begins, and anything behind them.
+    #[inline(always)]
+    pub(crate) fn arrange<T: Pod>(&self, from: &[T; 8], to: &mut [T; 8]) {
+        const { assert!(size_of::<T>() == 4) };
+        let from: u32x8 = bytemuck::cast(*from);
+        *to = bytemuck::cast(from.shuffle(self.numbers));
+    }
+}
+
 /// See [`super::Single::pack_ids`].
 pub(super) trait Packed {
     fn pack(self, bits: u32, to: &mut [u32]);
@@ -114,7 +149,7 @@ fn pack_each(ids: &[u32], bits: u32, to: &mut [u32]) {
 
 #[cfg(test)]
 mod tests {
-    use super::Packing;
+    use super::{Arrangement, Packing};
     use crate::lanes::{Job, Single, Width};
 
     struct Packs;
@@ -159,6 +194,25 @@ mod tests {
                 packing.pack(from, &mut to);
                 assert_eq!(to[..count], chosen, "{bits:b} into {room}");
                 assert!(to.get(8).is_none_or(|&beyond| beyond == 7.0));
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_of_any_choice_come_in_the_reverse_of_any_order() {
+        let from = [10, 11, 12, 13, 14, 15, 16, 17_u32];
+        for order in [&[0, 1, 2, 3, 4, 5, 6, 7][..], &[6, 2, 7, 0, 5, 1, 4, 3], &[2, 0, 1], &[0], &[]] {
+            let list = order.iter().rev().fold(0, |list, number| list << 3 | number);
+            // What lies above the order is none of it.
+            for list in [list, list | u32::try_from(order.len()).unwrap() << 28] {
+                for bits in (0..256_u32).filter(|bits| bits >> order.len() == 0 || order.len() == 8) {
+                    let arrangement = Arrangement::reversed(list, order.len(), bits);
+                    let mut to = [0; 8];
+                    arrangement.arrange(&from, &mut to);
+                    let chosen = order.iter().rev().filter(|&&number| bits >> number & 1 == 1);
+                    let expected: Vec<u32> = chosen.map(|&number| from[number as usize]).collect();
+                    assert_eq!(to[..arrangement.count()], expected, "{bits:b} of {order:?}");
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Wide nodes as they lie in memory.
 
 use super::{Bounds, Kind};
+use crate::lanes::Arrangement;
 
 /// Children of a wide node: as many as the lanes of a 256-bit vector of f32.
 pub(crate) const WIDTH: usize = 8;
@@ -97,6 +98,12 @@ impl Order {
         (self.0 >> 28) as usize
     }
 
+    /// Those of its slots whose bits are set, the last first.
+    #[inline(always)]
+    pub(crate) fn reversed(self, bits: u32) -> Arrangement {
+        Arrangement::reversed(self.0, self.count(), bits)
+    }
+
     /// The slot of a rank.
     #[inline(always)]
     pub(crate) fn slot(self, rank: usize) -> usize {
@@ -107,7 +114,7 @@ impl Order {
 /// What a slot of a node leads to, in a word: the 2 high bits say what, 0 a node, 1 a leaf of spheres, 2 of triangles,
 /// 3 of polygons; the 30 low bits are its index.
 #[repr(transparent)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct Child(u32);
 
 /// A [`Child`] taken apart.

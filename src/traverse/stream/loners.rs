@@ -7,8 +7,8 @@ use super::super::Counts;
 use super::super::single::{self, Ray};
 use super::STACK;
 use super::rays::StreamRays;
-use crate::lanes::Single;
-use crate::prepare::bvh::Child;
+use crate::lanes::{Lanes, Single};
+use crate::prepare::bvh::{Child, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
 
 /// Rays in turn: as many as it takes for memory to answer within a round.
@@ -28,13 +28,24 @@ pub(super) struct Loners {
 struct Slot {
     ray: Ray,
     number: u32,
+    /// Children that wait, and where the ray enters them.
     waiting: usize,
-    stack: [(Child, f32); STACK],
+    children: [Child; ROOM],
+    enters: [f32; ROOM],
 }
+
+/// All children of a node may be written at once.
+const ROOM: usize = STACK + WIDTH;
 
 impl Loners {
     pub(super) fn new() -> Self {
-        let slot = || Slot { ray: Ray::NONE, number: 0, waiting: 0, stack: [(Child::EMPTY, 0.0); STACK] };
+        let slot = || Slot {
+            ray: Ray::NONE,
+            number: 0,
+            waiting: 0,
+            children: [Child::EMPTY; ROOM],
+            enters: [0.0; ROOM],
+        };
         let mut order = [0; SLOTS];
         for (place, slot) in (0..).zip(&mut order) {
             *slot = place;
@@ -97,7 +108,7 @@ impl Loners {
         let slot = &mut self.slots[slot as usize];
         rays.write_ray(number as usize, &mut slot.ray);
         slot.number = number;
-        slot.stack[0] = (child, 0.0);
+        (slot.children[0], slot.enters[0]) = (child, 0.0);
         slot.waiting = 1;
     }
 }
@@ -122,9 +133,8 @@ impl Slot {
                 return false;
             }
             self.waiting -= 1;
-            let (child, enters) = self.stack[self.waiting];
-            if enters <= end {
-                break child;
+            if self.enters[self.waiting] <= end {
+                break self.children[self.waiting];
             }
         };
         match Hierarchy::place(child) {
@@ -133,13 +143,7 @@ impl Slot {
                 let node = &hierarchy.nodes[index];
                 let slabs = self.ray.slabs();
                 let (enters, bits) = single::enter_children::<F>(node, &self.ray, &slabs, end, counts);
-                // In the order that nodes hold for each octant, without a branch: to sort by where the ray enters is guesswork.
-                let order = node.orders[rays.class.octant()];
-                for rank in (0..order.count()).rev() {
-                    let slot = order.slot(rank);
-                    self.stack[self.waiting] = (node.children[slot], enters[slot]);
-                    self.waiting += (bits >> slot & 1) as usize;
-                }
+                self.push::<F>(node, rays.class.octant(), bits, &enters);
             }
             Some(leaf) => {
                 let found = (leaf, nearest);
@@ -148,8 +152,31 @@ impl Slot {
             }
         }
         if self.waiting > 0 {
-            hierarchy.prefetch(self.stack[self.waiting - 1].0);
+            hierarchy.prefetch(self.children[self.waiting - 1]);
         }
         self.waiting > 0
+    }
+
+    /// Puts those children of a node that the ray meets on the stack, the nearest on top: in the order that nodes hold for each
+    /// octant, since to sort by where the ray enters is guesswork; and without a branch.
+    #[inline(always)]
+    fn push<F: Single>(&mut self, node: &Node, octant: usize, bits: u32, enters: &[f32; WIDTH]) {
+        let order = node.orders[octant];
+        let children = self.children[self.waiting..].first_chunk_mut();
+        let places = children.zip(self.enters[self.waiting..].first_chunk_mut());
+        if let (Some((to_children, to_enters)), true) = (places, F::Node::WIDTH == WIDTH) {
+            let arrangement = order.reversed(bits);
+            arrangement.arrange(&node.children, to_children);
+            arrangement.arrange(enters, to_enters);
+            self.waiting += arrangement.count();
+            return;
+        }
+        let mut waiting = self.waiting;
+        for rank in (0..order.count()).rev() {
+            let slot = order.slot(rank);
+            (self.children[waiting], self.enters[waiting]) = (node.children[slot], enters[slot]);
+            waiting += (bits >> slot & 1) as usize;
+        }
+        self.waiting = waiting;
     }
 }
