@@ -47,7 +47,7 @@ fn percent(word: &str) -> Result<f64, String> {
 
 /// Side of the standard set's pictures, pixels.
 const STANDARD_SIDE: u32 = 512;
-/// Of the standard set, cost over pixels and threads is measured on this scene, at its largest size up to a limit.
+/// Of the standard set, cost over all but primitives is measured on this scene, at its largest size up to a limit.
 const GROWN: (StandardScene, u32) = (StandardScene::Terrain, 100_000);
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -120,14 +120,12 @@ fn work(arguments: &Arguments, pool: &rayon::ThreadPool) -> (Vec<Work>, u64) {
     };
     let repeat = arguments.measuring.repeat as usize;
     let grown = work.iter().filter(|work| work.is_grown(arguments)).count() as u64;
-    let threads = Growth::thread_counts(pool).len() as u64 * (repeat as u64 + 1);
-    let growth = grown * (Growth::steps_over_pixels(repeat) + threads);
-    let steps = work.len() as u64 * SceneBench::steps(repeat) + growth;
+    let steps = work.len() as u64 * SceneBench::steps(repeat) + grown * Growth::steps(pool, repeat);
     (work, steps)
 }
 
 impl Work {
-    /// Whether cost over pixels and threads is measured on it: on each file, and on one of the standard set.
+    /// Whether cost over all but primitives is measured on it: on each file, and on one of the standard set.
     fn is_grown(&self, arguments: &Arguments) -> bool {
         match self {
             Self::File(_) => true,
@@ -189,8 +187,7 @@ fn measured(
         let name = work.name();
         scenes.push(SceneBench::measure(&name, &scene, load_seconds, options)?);
         if work.is_grown(arguments) {
-            growth.push(Growth::over_pixels(&name, &scene, options)?);
-            growth.push(Growth::over_threads(&name, &scene, options)?);
+            growth.extend(Growth::of_frames(&name, &scene, options)?);
         }
     }
     if arguments.scenes.is_empty() {

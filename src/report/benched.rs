@@ -142,7 +142,11 @@ fn growth(report: &BenchReport) -> String {
             exponent(growth.frame_exponent),
         ]);
     }
-    format!("\nHow cost grows: seconds, and the power of the count that they follow.\n\n{}", table.lines())
+    format!(
+        "\nHow cost grows: seconds, and the power of the count that they follow. Samples are of a pixel; levels of rays are one more \
+         than\nthe depth of the deepest. Pictures for samples, lights and levels have half the sides.\n\n{}",
+        table.lines()
+    )
 }
 
 fn exponent(exponent: Option<f64>) -> String {

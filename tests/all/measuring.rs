@@ -207,13 +207,37 @@ fn bench_measures_phases_stages_rays_memory_and_growth() {
         );
         assert!(scene["errors"]["primary"]["hits"].as_u64().unwrap() > 0, "{scene}");
     }
-    let over: Vec<_> =
-        found["growth"].as_array().unwrap().iter().map(|of| of["over"].as_str().unwrap()).collect();
-    assert_eq!(over, ["primitives", "primitives", "pixels", "threads"]);
-    for growth in &found["growth"].as_array().unwrap()[..3] {
+    let growth = found["growth"].as_array().unwrap();
+    let over: Vec<_> = growth.iter().map(|of| of["over"].as_str().unwrap()).collect();
+    assert_eq!(over, ["primitives", "primitives", "pixels", "threads", "samples", "lights", "levels"]);
+    // There may be one thread, and so one point.
+    for growth in growth.iter().filter(|growth| growth["over"] != "threads") {
         assert!(growth["frame_exponent"].is_number(), "{growth}");
     }
-    table(&wavelane(&arguments));
+    let of_points = |growth: &Value, of: fn(&Value) -> &Value| {
+        let points = growth["points"].as_array().unwrap().iter();
+        points.map(|point| of(point).as_u64().unwrap()).collect::<Vec<_>>()
+    };
+    let [samples, lights, levels] = &growth[4..] else { panic!("{growth:?}") };
+    assert_eq!(of_points(samples, |point| &point["count"]), [1, 4, 16]);
+    assert_eq!(of_points(samples, |point| &point["rays"]["primary"]), [256, 4 * 256, 16 * 256]);
+    assert_eq!(of_points(lights, |point| &point["count"]), [1, 2, 4, 8, 16]);
+    assert!(of_points(lights, |point| &point["rays"]["shadow"]).is_sorted_by(|a, b| a < b), "{lights}");
+    assert_eq!(of_points(levels, |point| &point["count"]), [1, 2, 3, 5, 9, 17]);
+    assert!(of_points(levels, |point| &point["rays"]["reflect"])[..3].is_sorted_by(|a, b| a < b), "{levels}");
+    let text = table(&wavelane(&arguments));
+    for series in ["samples 1 4 16 ", "lights 1 2 4 8 16 ", "levels 1 2 3 5 9 17 "] {
+        assert!(text.contains(series), "{series} in\n{text}");
+    }
+}
+
+#[test]
+fn bench_leaves_out_what_nothing_grows_with() {
+    let folder = Folder::new();
+    let path = scene(&folder, "empty.toml", EMPTY);
+    let found = report(&["bench", &path, "--repeat", "1"]);
+    let over: Vec<_> = found["growth"].as_array().unwrap().iter().map(|of| &of["over"]).collect();
+    assert_eq!(over, ["pixels", "threads", "samples"]);
 }
 
 /// A baseline as it would be if its rates had been so many times those of now, and its times as many times shorter.

@@ -1,7 +1,7 @@
 //! How fast scenes are rendered, phase by phase and stage by stage, scalar beside SIMD, and how cost grows.
 //!
 //! - `scene`: one scene
-//! - `growth`: cost over primitives, pixels and threads
+//! - `growth`: cost over primitives, pixels, threads, samples, lights and levels of rays
 //! - `baseline`: what got slower since an earlier report
 
 mod baseline;
