@@ -130,7 +130,11 @@ fn growth(report: &BenchReport) -> String {
     let mut table = Table::new(2, ["scene", "over", "build s", "frame s", "build ~", "frame ~"]);
     for growth in &report.growth {
         let series = |of: fn(&GrowthPoint) -> Option<Spread>| {
-            growth.points.iter().map(|point| maybe(median(of(point)))).collect::<Vec<_>>().join(" ")
+            let medians: Vec<_> = growth.points.iter().map(|point| median(of(point))).collect();
+            if medians.iter().all(Option::is_none) {
+                return NONE.to_owned();
+            }
+            medians.into_iter().map(maybe).collect::<Vec<_>>().join(" ")
         };
         let counts = growth.points.iter().map(|point| point.count.to_string()).collect::<Vec<_>>().join(" ");
         table.push(vec![

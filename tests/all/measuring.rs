@@ -213,6 +213,7 @@ fn bench_measures_phases_stages_rays_memory_and_growth() {
     // There may be one thread, and so one point.
     for growth in growth.iter().filter(|growth| growth["over"] != "threads") {
         assert!(growth["frame_exponent"].is_number(), "{growth}");
+        assert_eq!(growth["build_exponent"].is_number(), growth["over"] == "primitives", "{growth}");
     }
     let of_points = |growth: &Value, of: fn(&Value) -> &Value| {
         let points = growth["points"].as_array().unwrap().iter();

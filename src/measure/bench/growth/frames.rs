@@ -40,7 +40,7 @@ pub(super) fn over_pixels(
     let points = QUARTERS.into_iter().map(|quarters| {
         let scene = with_quarters(scene, quarters);
         let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
-        point(pixels, &scene, options.pool, options)
+        frame(pixels, &scene, options)
     });
     points.collect()
 }
@@ -62,8 +62,7 @@ pub(super) fn over_samples(
     scene: &Scene,
     options: &BenchOptions<'_>,
 ) -> Result<Vec<GrowthPoint>, RenderError> {
-    let points =
-        SAMPLES.into_iter().map(|n| point(u64::from(n * n), &with_samples(scene, n), options.pool, options));
+    let points = SAMPLES.into_iter().map(|n| frame(u64::from(n * n), &with_samples(scene, n), options));
     points.collect()
 }
 
@@ -76,9 +75,7 @@ pub(super) fn over_lights(
         leave_out(LIGHTS.len(), options);
         return Ok(Vec::new());
     }
-    let points = LIGHTS
-        .into_iter()
-        .map(|count| point(u64::from(count), &with_lights(scene, count), options.pool, options));
+    let points = LIGHTS.into_iter().map(|count| frame(u64::from(count), &with_lights(scene, count), options));
     points.collect()
 }
 
@@ -96,7 +93,7 @@ pub(super) fn over_levels(
                 break;
             }
             let scene = with_depth(scene, depth);
-            points.push(point(u64::from(depth) + 1, &scene, options.pool, options)?);
+            points.push(frame(u64::from(depth) + 1, &scene, options)?);
         }
     }
     leave_out(DEPTHS.len() - points.len(), options);
@@ -142,6 +139,12 @@ fn with_depth(scene: &Scene, depth: u32) -> Scene {
     let mut scene = with_quarters(scene, SMALL);
     scene.render.max_depth = depth;
     scene
+}
+
+/// Where the geometry stays as it is, and so what it takes to make it ready.
+fn frame(count: u64, scene: &Scene, options: &BenchOptions<'_>) -> Result<GrowthPoint, RenderError> {
+    let point = point(count, scene, options.pool, options)?;
+    Ok(GrowthPoint { build_seconds: None, ..point })
 }
 
 fn point(

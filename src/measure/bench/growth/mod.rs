@@ -37,7 +37,7 @@ pub struct GrowthPoint {
     pub count: u64,
     /// Of a frame.
     pub rays: RayCounts,
-    /// To make the scene ready.
+    /// To make the scene ready, of primitives and threads: nothing else makes a difference to it.
     pub build_seconds: Option<Spread>,
     /// To trace and shade a frame; simd.
     pub frame_seconds: Option<Spread>,
