@@ -135,8 +135,11 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
 
 /// Numbers of a [`Record`].
 pub(crate) const RECORD: usize = 8;
-/// Numbers that lie side by side in memory.
-pub(crate) type Record = [f32; RECORD];
+/// Numbers that lie side by side, and never across two lines of memory: half of them would where they lie as an allocator happens
+/// to put them.
+#[repr(C, align(32))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Record(pub(crate) [f32; RECORD]);
 
 /// f64 lanes: what follows a hit is computed in them, and rounded to f32 where it enters a queue.
 pub(crate) trait Double: Lanes<Scalar = f64> {

@@ -18,10 +18,10 @@ impl Records for f32x4 {
         let [k, l, m, n] = [record(0), record(1), record(2), record(3)];
         let half = |from: usize| {
             Self::transpose([
-                Self::load(&k[from..]),
-                Self::load(&l[from..]),
-                Self::load(&m[from..]),
-                Self::load(&n[from..]),
+                Self::load(&k.0[from..]),
+                Self::load(&l.0[from..]),
+                Self::load(&m.0[from..]),
+                Self::load(&n.0[from..]),
             ])
         };
         let ([a, b, c, d], [e, f, g, h]) = (half(0), half(4));
@@ -33,8 +33,8 @@ impl Records for f32x4 {
         let [a, b, c, d, e, f, g, h] = numbers;
         let (low, high) = (Self::transpose([a, b, c, d]), Self::transpose([e, f, g, h]));
         for lane in 0..Self::WIDTH {
-            low[lane].store(&mut to[lane]);
-            high[lane].store(&mut to[lane][4..]);
+            low[lane].store(&mut to[lane].0);
+            high[lane].store(&mut to[lane].0[4..]);
         }
     }
 }
@@ -43,14 +43,14 @@ impl Records for f32x8 {
     #[inline(always)]
     fn transposed<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; RECORD] {
         Self::transpose([
-            Self::new(*record(0)),
-            Self::new(*record(1)),
-            Self::new(*record(2)),
-            Self::new(*record(3)),
-            Self::new(*record(4)),
-            Self::new(*record(5)),
-            Self::new(*record(6)),
-            Self::new(*record(7)),
+            Self::new(record(0).0),
+            Self::new(record(1).0),
+            Self::new(record(2).0),
+            Self::new(record(3).0),
+            Self::new(record(4).0),
+            Self::new(record(5).0),
+            Self::new(record(6).0),
+            Self::new(record(7).0),
         ])
     }
 
@@ -58,7 +58,7 @@ impl Records for f32x8 {
     fn store(numbers: [Self; RECORD], to: &mut [Record]) {
         let records = Self::transpose(numbers);
         for lane in 0..Self::WIDTH {
-            to[lane] = records[lane].to_array();
+            to[lane] = Record(records[lane].to_array());
         }
     }
 }
@@ -90,23 +90,25 @@ impl Records for f32x16 {
 /// The least of the lanes of each: the same in any order, unlike a sum. All at once, and by halves, since a chain of sixteen
 /// is slow.
 #[inline(always)]
-pub(crate) fn least_of_each<F: Single>(lanes: [F; RECORD]) -> Record {
-    let mut records = [[0.0; RECORD]; 16];
+pub(crate) fn least_of_each<F: Single>(lanes: [F; RECORD]) -> [f32; RECORD] {
+    let mut records = [Record::default(); 16];
     F::store_records(lanes, &mut records);
     for half in [8, 4, 2, 1] {
         if half < F::WIDTH {
             let (low, high) = records.split_at_mut(half);
-            for (low, high) in low.as_flattened_mut().iter_mut().zip(high.as_flattened()) {
+            let (low, high): (&mut [f32], &[f32]) =
+                (bytemuck::cast_slice_mut(low), bytemuck::cast_slice(high));
+            for (low, high) in low.iter_mut().zip(high) {
                 *low = Lanes::min(*high, *low);
             }
         }
     }
-    records[0]
+    records[0].0
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::lanes::{Job, RECORD, Record, Single, Width};
+    use crate::lanes::{Job, Record, Single, Width};
 
     struct ThereAndBack;
 
@@ -117,21 +119,26 @@ mod tests {
             // Bits of any kind: some are no numbers.
             let mut bits = (0xFFFF_FE00..).map(f32::from_bits);
             let records: Vec<Record> =
-                (0..32).map(|_| std::array::from_fn(|_| bits.next().unwrap_or(0.0))).collect();
+                (0..32).map(|_| Record(std::array::from_fn(|_| bits.next().unwrap_or(0.0)))).collect();
             let row = |lane: usize| (lane * 7 + 3) % 32;
             let numbers = F::transposed(|lane| &records[row(lane)]);
             for (number, lanes) in numbers.into_iter().enumerate() {
                 let mut words = [0; 16];
                 F::store_ids(lanes.bits_as_ids(), &mut words);
                 for (lane, word) in words[..F::WIDTH].iter().enumerate() {
-                    assert_eq!(*word, records[row(lane)][number].to_bits(), "number {number}, lane {lane}");
+                    assert_eq!(*word, records[row(lane)].0[number].to_bits(), "number {number}, lane {lane}");
                 }
             }
-            let mut back = vec![[0.0; RECORD]; 17];
+            let mut back = vec![Record::default(); 17];
             F::store_records(numbers, &mut back);
             for (lane, back) in back.iter().enumerate() {
-                let expected = if lane < F::WIDTH { records[row(lane)] } else { [0.0; RECORD] };
-                assert_eq!(back.map(f32::to_bits), expected.map(f32::to_bits), "lane {lane} of {}", F::WIDTH);
+                let expected = if lane < F::WIDTH { records[row(lane)] } else { Record::default() };
+                assert_eq!(
+                    back.0.map(f32::to_bits),
+                    expected.0.map(f32::to_bits),
+                    "lane {lane} of {}",
+                    F::WIDTH
+                );
             }
         }
     }

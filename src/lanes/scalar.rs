@@ -135,12 +135,12 @@ impl Single for f32 {
 
     #[inline(always)]
     fn store_records(numbers: [Self; RECORD], to: &mut [Record]) {
-        to[0] = numbers;
+        to[0] = Record(numbers);
     }
 
     #[inline(always)]
     fn transposed<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; RECORD] {
-        *record(0)
+        record(0).0
     }
 }
 

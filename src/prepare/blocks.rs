@@ -12,7 +12,7 @@ pub(crate) const BLOCK: usize = 4;
 /// | 144–159 | `size` |
 /// | 160–175 | `error_area` |
 /// | 176–191 | `ids` |
-#[repr(C, align(16))]
+#[repr(C, align(64))]
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleBlock {
     pub(crate) vertices: [[[f32; BLOCK]; 3]; 3],
@@ -30,7 +30,7 @@ pub(crate) struct TriangleBlock {
 /// | 48–63 | `radii` |
 /// | 64–79 | `slack` |
 /// | 80–95 | `ids` |
-#[repr(C, align(16))]
+#[repr(C, align(32))]
 #[derive(Clone, Copy)]
 pub(crate) struct SphereBlock {
     pub(crate) centers: [[f32; BLOCK]; 3],

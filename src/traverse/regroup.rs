@@ -7,7 +7,7 @@
 
 use super::stream::{AHEAD, CAPACITY, Class};
 use super::{RUN, Rays};
-use crate::lanes::{Lanes, RECORD, Record, Single, prefetch};
+use crate::lanes::{Lanes, Record, Single, prefetch};
 
 /// Rays that are parted by class at a time: as many as stay in the cache, and enough for long lists. Of 8192, 16,384 and
 /// 32,768 rays in an order the last were fastest on four scenes; 65,536 and 262,144 were slower when rays were also sorted in
@@ -59,7 +59,7 @@ impl Incoming {
     ) {
         let zero = F::splat(0.0);
         let start = self.rays.len();
-        self.rays.resize(start + RUN, [0.0; RECORD]);
+        self.rays.resize(start + RUN, Record::default());
         for row in (0..count).step_by(F::WIDTH) {
             let from = first + row;
             let ([x, y, z], [dx, dy, dz]) = (rays.origin, rays.direction);
@@ -80,7 +80,7 @@ impl Incoming {
         if DEPARTING {
             self.departures.extend((first..first + count).map(|row| {
                 let [x, y, z] = rays.origin_low.map(|column| column[row]);
-                [x, y, z, f32::from_bits(rays.departure[row]), 0.0, 0.0, 0.0, 0.0]
+                Record([x, y, z, f32::from_bits(rays.departure[row]), 0.0, 0.0, 0.0, 0.0])
             }));
         }
         self.rows.extend((first..first + count).map(word));
@@ -125,8 +125,8 @@ impl Incoming {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for ray in &self.rays {
             for axis in 0..3 {
-                low[axis] = Lanes::min(ray[axis], low[axis]);
-                high[axis] = Lanes::max(ray[axis], high[axis]);
+                low[axis] = Lanes::min(ray.0[axis], low[axis]);
+                high[axis] = Lanes::max(ray.0[axis], high[axis]);
             }
         }
         let extent =
@@ -175,7 +175,8 @@ fn part_by_class(classes: &[u8], first: usize, parted: &mut Vec<u32>) -> [usize;
 /// Third axis and signs. Without a branch: of rays in no order it is anybody's guess.
 #[inline(always)]
 fn class_number(ray: &Record) -> u8 {
-    let direction = [ray[4], ray[5], ray[6]];
+    let [.., dx, dy, dz, _] = ray.0;
+    let direction = [dx, dy, dz];
     let signs = (0..3).fold(0, |signs, axis| signs | u8::from(direction[axis] < 0.0) << axis);
     let [x, y, z] = direction.map(f32::abs);
     let is_first = (x >= y) & (x >= z);
@@ -196,7 +197,7 @@ fn class_of(number: usize) -> Class {
 fn cell(ray: &Record, low: [f32; 3], cells_per_length: f32) -> u16 {
     let last = (1 << CELL_BITS) - 1;
     let along =
-        |axis: usize| spread_by_3((((ray[axis] - low[axis]) * cells_per_length) as u32).min(last)) << axis;
+        |axis: usize| spread_by_3((((ray.0[axis] - low[axis]) * cells_per_length) as u32).min(last)) << axis;
     (along(0) | along(1) | along(2)) as u16
 }
 
@@ -245,9 +246,9 @@ mod tests {
 
     #[test]
     fn cells_follow_a_curve_of_bits() {
-        let ray = [3.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0];
-        assert_eq!(cell(&ray, [0.0; 3], 1.0), 0b_001_101);
-        assert_eq!(cell(&[1e30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0; 3], 1.0), 0b001_001_001_001_001);
+        let cell_of = |[x, y, z]: [f32; 3]| cell(&Record([x, y, z, 0.0, 1.0, 0.0, 0.0, 0.0]), [0.0; 3], 1.0);
+        assert_eq!(cell_of([3.0, 0.0, 1.0]), 0b_001_101);
+        assert_eq!(cell_of([1e30, 0.0, 0.0]), 0b001_001_001_001_001);
     }
 
     #[test]
@@ -256,7 +257,7 @@ mod tests {
         let count = WINDOW + 5000;
         #[expect(clippy::cast_possible_truncation, reason = "any number will do")]
         let number = |row: usize, column: usize| random_unit([word(row), word(column)]) as f32 - 0.5;
-        incoming.rays.extend((0..count).map(|row| std::array::from_fn(|column| number(row, column))));
+        incoming.rays.extend((0..count).map(|row| Record(std::array::from_fn(|column| number(row, column)))));
         incoming.classes.extend(incoming.rays.iter().map(class_number));
         incoming.rows.extend((0..count).map(word));
         for by_origin in [false, true] {
@@ -268,7 +269,7 @@ mod tests {
                 assert!(!places.is_empty() && places.len() <= CAPACITY);
                 for &place in places {
                     seen[place as usize] += 1;
-                    let [.., x, y, z, _] = incoming.rays[place as usize];
+                    let [.., x, y, z, _] = incoming.rays[place as usize].0;
                     assert_eq!(class.backwards, [x, y, z].map(|component| component < 0.0));
                     assert_eq!(class.third, axes_along([x, y, z])[2]);
                 }

@@ -63,7 +63,7 @@ const DEPARTURE: usize = 7;
 
 impl StreamRays {
     pub(super) fn new() -> Self {
-        let records = || Box::new([[0.0; RECORD]; CAPACITY]);
+        let records = || Box::new([Record::default(); CAPACITY]);
         Self {
             class: Class { third: 2, backwards: [false; 3] },
             slabs: records(),
@@ -103,7 +103,7 @@ impl StreamRays {
             L::store_records([dx, dy, dz, a, one / a, zero, zero, zero], &mut self.lines[first..]);
         }
         self.nearest.clear();
-        self.nearest.extend(self.slabs[..places.len()].iter().map(|slab| Nearest::before(slab[END])));
+        self.nearest.extend(self.slabs[..places.len()].iter().map(|slab| Nearest::before(slab.0[END])));
     }
 
     /// What slab tests need of the rays of these numbers: as many as there are lanes.
@@ -142,7 +142,7 @@ impl StreamRays {
     /// only just been stored, where a sixth of the samples of rays alone fell (2026-11). Whole walks became no faster.
     #[inline(always)]
     pub(super) fn write_ray(&self, number: usize, ray: &mut Ray) {
-        let (slab, face, line) = (&self.slabs[number], &self.faces[number], &self.lines[number]);
+        let (slab, face, line) = (&self.slabs[number].0, &self.faces[number].0, &self.lines[number].0);
         let [x, y, z, padding, a, b, c, _] = *slab;
         let origin = [x, y, z];
         for axis in 0..3 {
@@ -181,7 +181,7 @@ impl StreamRays {
     #[inline(always)]
     pub(super) fn keep<const ANY: bool>(&mut self, number: usize, nearest: Nearest) {
         self.nearest[number] = nearest;
-        self.slabs[number][END] = if self.is_done::<ANY>(number) { DEAD } else { nearest.end() };
+        self.slabs[number].0[END] = if self.is_done::<ANY>(number) { DEAD } else { nearest.end() };
     }
 
     /// t and id as [`super::super::Ends`] has them.
