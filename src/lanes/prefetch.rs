@@ -4,18 +4,15 @@
 //! mirror rays, 2026-11.
 #![expect(unsafe_code, reason = "the intrinsic is unsafe")]
 
-/// A line of memory, bytes.
-const LINE: usize = 64;
-
-/// Asks for lines of memory that will be read soon. Any address will do.
+/// Asks for the line of memory at an address, which will be read soon. Any address will do.
 #[inline(always)]
-pub(crate) fn prefetch<const LINES: usize>(address: *const u8) {
+pub(crate) fn prefetch(address: *const u8) {
     #[cfg(target_arch = "x86_64")]
-    for line in 0..LINES {
+    {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // SAFETY: to prefetch has no effect but on time, whatever the address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.wrapping_add(line * LINE).cast()) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (address, LINE);
+    let _ = address;
 }

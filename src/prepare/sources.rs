@@ -97,7 +97,7 @@ impl Order<'_> {
     pub(super) fn spheres(&self, leaf: Leaf) -> SphereBlock {
         let Sources { geometry, scale } = self.sources;
         for sphere in self.later(leaf, Kind::Sphere, Self::AHEAD, &geometry.spheres) {
-            prefetch::<1>(std::ptr::from_ref(sphere).cast());
+            prefetch(std::ptr::from_ref(sphere).cast());
         }
         let mut block = SphereBlock::EMPTY;
         for (lane, index) in self.of(leaf, Kind::Sphere).enumerate() {
@@ -110,11 +110,11 @@ impl Order<'_> {
     pub(super) fn triangles(&self, leaf: Leaf, extent: f32) -> TriangleBlock {
         let geometry = self.sources.geometry;
         for triangle in self.later(leaf, Kind::Triangle, 2 * Self::AHEAD, &geometry.triangles) {
-            prefetch::<1>(std::ptr::from_ref(triangle).cast());
+            prefetch(std::ptr::from_ref(triangle).cast());
         }
         for triangle in self.later(leaf, Kind::Triangle, Self::AHEAD, &geometry.triangles) {
             for index in triangle.vertices {
-                prefetch::<1>(geometry.vertices.as_ptr().wrapping_add(index as usize).cast());
+                prefetch(geometry.vertices.as_ptr().wrapping_add(index as usize).cast());
             }
         }
         let mut block = TriangleBlock::EMPTY;

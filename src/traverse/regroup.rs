@@ -90,9 +90,9 @@ impl Incoming {
     #[inline(always)]
     pub(super) fn prefetch<const DEPARTING: bool>(&self, places: &[u32], count: usize) {
         for &place in places.iter().take(count) {
-            prefetch::<1>(self.rays.as_ptr().wrapping_add(place as usize).cast());
+            prefetch(self.rays.as_ptr().wrapping_add(place as usize).cast());
             if DEPARTING {
-                prefetch::<1>(self.departures.as_ptr().wrapping_add(place as usize).cast());
+                prefetch(self.departures.as_ptr().wrapping_add(place as usize).cast());
             }
         }
     }
@@ -110,7 +110,7 @@ impl Incoming {
                 let ahead = |place: usize| self.cells[(place + AHEAD).min(self.cells.len() - 1)].1;
                 self.moved.clear();
                 self.moved.extend(order().enumerate().map(|(at, place)| {
-                    prefetch::<1>(records.as_ptr().wrapping_add(ahead(at) as usize).cast());
+                    prefetch(records.as_ptr().wrapping_add(ahead(at) as usize).cast());
                     records[place]
                 }));
                 std::mem::swap(records, &mut self.moved);

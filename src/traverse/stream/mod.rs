@@ -94,9 +94,9 @@ impl Stream {
         for (number, &place) in places.iter().enumerate() {
             if let Some(&ahead) = places.get(number + AHEAD) {
                 let row = incoming.rows[ahead as usize] as usize;
-                prefetch::<1>(ends.t.as_ptr().wrapping_add(row).cast());
+                prefetch(ends.t.as_ptr().wrapping_add(row).cast());
                 if !ANY {
-                    prefetch::<1>(ends.id.as_ptr().wrapping_add(row).cast());
+                    prefetch(ends.id.as_ptr().wrapping_add(row).cast());
                 }
             }
             let row = incoming.rows[place as usize] as usize;
