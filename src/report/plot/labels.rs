@@ -72,7 +72,7 @@ pub(super) fn place(
 fn nearest_free((x, y): (i32, i32), width: i32, taken: &[Area], frame: &Area) -> Place {
     const GAP: i32 = 9;
     const STEP: i32 = 3;
-    const FURTHEST: i32 = 30;
+    let furthest = (frame.bottom - frame.top) / STEP;
     // Beside a mark without a line, a little nearer to it than with one.
     let candidate = |side: i32, steps: i32| {
         let needs_line = steps.abs() * STEP > LINE / 3;
@@ -84,7 +84,7 @@ fn nearest_free((x, y): (i32, i32), width: i32, taken: &[Area], frame: &Area) ->
     // Going left costs as much as going up or down by two lines.
     let cost = |side: i32, steps: i32| steps.abs() * STEP + if side > 0 { 0 } else { 2 * LINE };
     let mut candidates: Vec<(i32, i32)> =
-        (-FURTHEST..=FURTHEST).flat_map(|steps| [(1, steps), (-1, steps)]).collect();
+        (-furthest..=furthest).flat_map(|steps| [(1, steps), (-1, steps)]).collect();
     candidates.sort_by_key(|&(side, steps)| cost(side, steps));
     let is_free =
         |place: &Place| frame.holds(&place.area) && !taken.iter().any(|other| other.overlaps(&place.area));
