@@ -1,6 +1,6 @@
 //! `compare --report`: a folder with a page.
 
-use crate::support::{Folder, stderr, stdout, wavelane};
+use crate::support::{Folder, assert_plot, stderr, stdout, wavelane};
 use roxmltree::{Document, ParsingOptions};
 use std::path::Path;
 use std::process::Output;
@@ -71,28 +71,6 @@ fn assert_sound(folder: &Path) -> String {
     }
     page
 }
-
-/// All of it lies within the plot, or right at its edge.
-#[track_caller]
-fn assert_plot(svg: &str) {
-    let parsed = Document::parse(svg).unwrap_or_else(|error| panic!("{error}\n{svg}"));
-    let size = |name| parsed.root_element().attribute(name).unwrap().parse::<f64>().unwrap();
-    let (width, height) = (size("width"), size("height"));
-    assert!(parsed.descendants().any(|node| node.has_tag_name((SVG, "text"))), "{svg}");
-    for node in parsed.descendants() {
-        for attribute in node.attributes() {
-            let end = match attribute.name() {
-                "x" | "x1" | "x2" | "cx" => width,
-                "y" | "y1" | "y2" | "cy" => height,
-                _ => continue,
-            };
-            let at: f64 = attribute.value().parse().unwrap();
-            assert!((0.0..=end).contains(&at), "{attribute:?} of {end}");
-        }
-    }
-}
-
-const SVG: &str = "http://www.w3.org/2000/svg";
 
 #[test]
 fn the_page_is_whole_and_needs_no_network() {

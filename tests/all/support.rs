@@ -1,6 +1,7 @@
 //! What several tests need: scenes from text, rendered by the library; the program; temporary folders.
 
 use glam::Vec3;
+use roxmltree::Document;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
@@ -119,6 +120,27 @@ pub(crate) fn assert_close(found: [f32; 3], expected: [f64; 3], tolerance: f64) 
     for channel in 0..3 {
         let difference = (f64::from(found[channel]) - expected[channel]).abs();
         assert!(difference <= tolerance, "found {found:?}, expected {expected:?}");
+    }
+}
+
+/// All of it lies within the plot, or right at its edge.
+#[track_caller]
+pub(crate) fn assert_plot(svg: &str) {
+    const SVG: &str = "http://www.w3.org/2000/svg";
+    let parsed = Document::parse(svg).unwrap_or_else(|error| panic!("{error}\n{svg}"));
+    let size = |name| parsed.root_element().attribute(name).unwrap().parse::<f64>().unwrap();
+    let (width, height) = (size("width"), size("height"));
+    assert!(parsed.descendants().any(|node| node.has_tag_name((SVG, "text"))), "{svg}");
+    for node in parsed.descendants() {
+        for attribute in node.attributes() {
+            let end = match attribute.name() {
+                "x" | "x1" | "x2" | "cx" => width,
+                "y" | "y1" | "y2" | "cy" => height,
+                _ => continue,
+            };
+            let at: f64 = attribute.value().parse().unwrap();
+            assert!((0.0..=end).contains(&at), "{attribute:?} of {end}");
+        }
     }
 }
 
