@@ -8,10 +8,11 @@ use crate::load;
 use crate::measure::Machine;
 use crate::measure::bench::{Baseline, BenchOptions, BenchReport, Growth, SceneBench};
 use crate::render::RenderError;
-use crate::report::{Table, benched, number};
+use crate::report::{Table, benched, growth_figure, number};
 use crate::save::{self, SaveError};
 use crate::scene::Scene;
 use std::cell::Cell;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -28,6 +29,9 @@ pub(super) struct Arguments {
     sizes: Vec<u32>,
     #[command(flatten)]
     measuring: MeasuringArguments,
+    /// Draw how cost grows: seconds over primitives, pixels and so on, logarithmic, beside lines that are linear; an .svg
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     /// An earlier result (--json) to compare with
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
@@ -51,9 +55,11 @@ const STANDARD_SIDE: u32 = 512;
 const GROWN: (StandardScene, u32) = (StandardScene::Terrain, 100_000);
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let inputs: Vec<&Path> =
-        arguments.scenes.iter().chain(&arguments.baseline).map(PathBuf::as_path).collect();
-    output::check_json(arguments.measuring.json.as_deref(), &inputs)?;
+    let inputs = arguments.scenes.iter().chain(&arguments.baseline);
+    let mut others: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
+    output::check_svg(arguments.plot.as_deref(), &others)?;
+    others.extend(arguments.plot.as_deref());
+    output::check_json(arguments.measuring.json.as_deref(), &others)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.measuring.threads()).build();
     let pool = pool.map_err(RenderError::from)?;
     let baseline = arguments.baseline.as_deref().map(|path| baseline(path, pool.current_num_threads()));
@@ -82,6 +88,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     if let Some(path) = &arguments.measuring.json {
         output::json(&report, path)?;
+    }
+    if let Some(path) = &arguments.plot {
+        let svg = growth_figure(&report)
+            .map_err(|error| Failure::Write { path: path.clone(), why: io::Error::other(error) })?;
+        output::svg(&svg, path)?;
     }
     if !arguments.measuring.json_is_stdout() {
         output::result(&benched(&report).trim_end())?;

@@ -39,6 +39,16 @@ pub(super) fn check_json(path: Option<&Path>, others: &[&Path]) -> Result<(), Fa
     whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })
 }
 
+/// Says early whether [`svg`] could write there, without taking the place of a file that is read.
+pub(super) fn check_svg(path: Option<&Path>, inputs: &[&Path]) -> Result<(), Failure> {
+    let Some(path) = path else { return Ok(()) };
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
+        return Err(Failure::Usage(format!("{}: the name of a plot ends in .svg", path.display())));
+    }
+    check_distinct(&[path], inputs)?;
+    whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })
+}
+
 /// Says early whether files to be written would take each other's place, or that of what is read.
 pub(super) fn check_distinct(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
     for (index, output) in outputs.iter().enumerate() {
@@ -80,4 +90,10 @@ pub(super) fn json(report: &impl Serialize, path: &Path) -> Result<(), Failure> 
         return result(&text);
     }
     whole_file::write(path, |writer| writeln!(writer, "{text}")).map_err(failed)
+}
+
+/// A plot, to a file.
+pub(super) fn svg(text: &str, path: &Path) -> Result<(), Failure> {
+    let written = whole_file::write(path, |writer| writer.write_all(text.as_bytes()));
+    written.map_err(|why| Failure::Write { path: path.to_owned(), why })
 }

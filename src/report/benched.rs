@@ -153,6 +153,6 @@ fn growth(report: &BenchReport) -> String {
     )
 }
 
-fn exponent(exponent: Option<f64>) -> String {
+pub(super) fn exponent(exponent: Option<f64>) -> String {
     exponent.map_or_else(|| NONE.into(), |exponent| format!("n^{exponent:.2}"))
 }

@@ -60,7 +60,7 @@ pub(super) fn speed_over_error(comparison: &Comparison) -> Result<Figure, PlotEr
     let runs = if runs == 1 { "one frame".to_owned() } else { format!("the median of {runs} frames") };
     Ok(Figure {
         file: SPEED_OVER_ERROR,
-        svg: Chart { x, y, series, rules }.draw()?,
+        svg: Chart { x, y, series, rules, guides: vec![] }.draw()?,
         caption: format!(
             "Speed over error: up is faster, left is nearer to the truth. All rays of the frame over the seconds to trace and \
              shade it, {runs}, a bar as long as their median absolute deviation to either side; the reference has one frame, and \

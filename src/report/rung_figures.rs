@@ -50,7 +50,7 @@ fn formulas(
         points().map(|point| point.x).chain([8.0 * largest]),
     );
     let y = Axis::linear("time of a test (ns)", points().map(|point| point.y + point.y_spread));
-    let svg = Chart { x, y, series, rules: vec![] }.draw()?;
+    let svg = Chart { x, y, series, rules: vec![], guides: vec![] }.draw()?;
     let aimed = if leaks.is_some() { " Leaks are of rays aimed at what they share." } else { "" };
     Ok(Some(Figure {
         file,
@@ -107,7 +107,7 @@ fn weak_rays(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
     let [width, height] = rung.size;
     Ok(Some(Figure {
         file: WEAK_RAYS,
-        svg: Chart { x, y, series, rules: vec![] }.draw()?,
+        svg: Chart { x, y, series, rules: vec![], guides: vec![] }.draw()?,
         caption: format!(
             "Without the rays whose weight is below min_weight, which the points are labelled with: down is faster, left is nearer \
              to the truth. {width} × {height} pixels of one sample, medians."
@@ -129,7 +129,7 @@ fn samples(rungs: &Rungs) -> Result<Option<Figure>, PlotError> {
     // Lines have their names right of their ends.
     let x = Axis::log("time of the picture (s)", points().map(|point| point.x).chain([4.0 * longest]));
     let y = Axis::log("error: RMSE, linear colour", points().map(|point| point.y));
-    let svg = Chart { x, y, series, rules: vec![] }.draw()?;
+    let svg = Chart { x, y, series, rules: vec![], guides: vec![] }.draw()?;
     let [width, height] = rung.size;
     Ok(Some(Figure {
         file: SAMPLES,

@@ -1,6 +1,6 @@
 //! `compare` and `bench`: tables and reports of speed beside error.
 
-use crate::support::{Folder, STILL_LIFE, stderr, stdout, wavelane};
+use crate::support::{Folder, STILL_LIFE, assert_plot, stderr, stdout, wavelane};
 use serde_json::Value;
 use std::process::Output;
 
@@ -226,19 +226,68 @@ fn bench_measures_phases_stages_rays_memory_and_growth() {
     assert!(of_points(lights, |point| &point["rays"]["shadow"]).is_sorted_by(|a, b| a < b), "{lights}");
     assert_eq!(of_points(levels, |point| &point["count"]), [1, 2, 3, 5, 9, 17]);
     assert!(of_points(levels, |point| &point["rays"]["reflect"])[..3].is_sorted_by(|a, b| a < b), "{levels}");
-    let text = table(&wavelane(&arguments));
+    let folder = Folder::new();
+    let plot = folder.file("growth.svg").into_os_string().into_string().unwrap();
+    let text = table(&wavelane(&[&arguments[..], &["--plot", &plot]].concat()));
     for series in ["samples 1 4 16 ", "lights 1 2 4 8 16 ", "levels 1 2 3 5 9 17 "] {
         assert!(text.contains(series), "{series} in\n{text}");
     }
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert_plot(&svg);
+    for over in ["primitives", "pixels", "threads", "samples a pixel", "lights", "levels of rays"] {
+        assert_eq!(svg.matches(&format!("\nSeconds over {over}\n")).count(), 1, "{over} in\n{svg}");
+    }
+    for line in ["\nterrain n^", "\nterrain, build n^", "\ntetrahedra n^", "\ntetrahedra, build n^"] {
+        assert!(svg.contains(line), "{line} in\n{svg}");
+    }
+}
+
+#[test]
+fn a_plot_of_growth_that_cannot_be_written_is_found_out_before_the_work() {
+    let folder = Folder::new();
+    let at = |name: &str| folder.file(name).into_os_string().into_string().unwrap();
+    let (path, baseline) = (scene(&folder, "scene.svg", STILL_LIFE), scene(&folder, "a.svg", "{}"));
+    let (same, other) = (at("folder.svg/../scene.svg"), at("b.svg"));
+    std::fs::create_dir(at("folder.svg")).unwrap();
+    let ending = "the name of a plot ends in .svg";
+    let taken = "another file of this command has this name; choose another";
+    for (arguments, code, said) in [
+        (&["--plot", "a.png"][..], 2, format!("a.png: {ending}")),
+        (&["--plot", "-"], 2, format!("-: {ending}")),
+        (&["--plot", &path], 2, format!("{path}: {taken}")),
+        (&["--plot", &same], 2, format!("{same}: {taken}")),
+        (&["--plot", &baseline, "--baseline", &baseline], 2, format!("{baseline}: {taken}")),
+        (&["--plot", &other, "--json", &other], 2, format!("--json {other}: {taken}")),
+        (
+            &["--plot", &at("absent/a.svg")],
+            1,
+            format!("{}: cannot be written: there is no", at("absent/a.svg")),
+        ),
+        (
+            &["--plot", &at("folder.svg")],
+            1,
+            format!("{}: cannot be written: it is a folder", at("folder.svg")),
+        ),
+    ] {
+        let output = wavelane(&[&["bench", &path], arguments].concat());
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).starts_with(&said), "{arguments:?} says {}", stderr(&output));
+        assert_eq!(stdout(&output), "");
+    }
+    assert_eq!(folder.names(), ["a.svg", "folder.svg", "scene.svg"]);
 }
 
 #[test]
 fn bench_leaves_out_what_nothing_grows_with() {
     let folder = Folder::new();
     let path = scene(&folder, "empty.toml", EMPTY);
-    let found = report(&["bench", &path, "--repeat", "1"]);
+    let plot = folder.file("growth.SVG").into_os_string().into_string().unwrap();
+    let found = report(&["bench", &path, "--repeat", "1", "--plot", &plot]);
     let over: Vec<_> = found["growth"].as_array().unwrap().iter().map(|of| &of["over"]).collect();
     assert_eq!(over, ["pixels", "threads", "samples"]);
+    let svg = std::fs::read_to_string(&plot).unwrap();
+    assert_plot(&svg);
+    assert_eq!(svg.matches("Seconds over ").count(), 3, "{svg}");
 }
 
 /// A baseline as it would be if its rates had been so many times those of now, and its times as many times shorter.

@@ -14,8 +14,17 @@ pub(crate) struct Axis {
 enum Scale {
     /// From 0, so many steps of a round number.
     Linear { step: f64, steps: f64 },
-    /// From one power of ten, or 2 or 5 of them, to another. Where there are zeros they have a place of their own left of it.
-    Log { start: Round, end: Round, has_zero: bool },
+    /// From one power of ten to another, and the first and the last round number between them. Where there are zeros they have
+    /// a place of their own left of it.
+    Log { ends: [f64; 2], start: Round, end: Round, ticks: Ticks, has_zero: bool },
+}
+
+/// Which round numbers are written beside a logarithmic axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ticks {
+    All,
+    /// There would be too many.
+    Powers,
 }
 
 /// m · 10^exponent, m being 1, 2 or 5: numbers that people count in.
@@ -38,8 +47,32 @@ impl Axis {
         Self { title: title.into(), scale: Scale::Linear { step, steps } }
     }
 
-    /// Around all of some numbers, in powers of ten. Zeros stand apart, left of a break; what is infinite does not count.
+    /// Around all of some numbers, in powers of ten, from a round one to another. Zeros stand apart, left of a break; what is
+    /// infinite does not count.
     pub(crate) fn log(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
+        // Marks do not sit on the frame.
+        const MARGIN: f64 = 1.3;
+        let (least, largest, has_zero) = Self::positive(values, MARGIN);
+        Self { title: title.into(), scale: Scale::around(least, largest, has_zero) }
+    }
+
+    /// The same, but it ends close to the numbers if there are two round ones or more between them: for small plots.
+    pub(crate) fn close_log(title: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
+        const MARGIN: f64 = 1.15;
+        let (least, largest, has_zero) = Self::positive(values, MARGIN);
+        let (start, end) = (Round::from_above(least), Round::from_below(largest));
+        let scale = if start < end {
+            let ends = [least.log10(), largest.log10()];
+            let ticks = if end.exponent - start.exponent < 2 { Ticks::All } else { Ticks::Powers };
+            Scale::Log { ends, start, end, ticks, has_zero }
+        } else {
+            Scale::around(least, largest, has_zero)
+        };
+        Self { title: title.into(), scale }
+    }
+
+    /// The least and the largest number above 0, with a margin around them, and whether there are zeros too.
+    fn positive(values: impl IntoIterator<Item = f64>, margin: f64) -> (f64, f64, bool) {
         let (mut least, mut largest, mut has_zero) = (f64::INFINITY, 0.0, false);
         for value in values.into_iter().filter(|value| value.is_finite()) {
             if value > 0.0 {
@@ -48,15 +81,11 @@ impl Axis {
                 has_zero = true;
             }
         }
-        // Marks do not sit on the frame.
-        const MARGIN: f64 = 1.3;
-        let (least, largest) = if largest > 0.0 {
-            (least.clamp(LEAST, LARGEST) / MARGIN, largest.clamp(LEAST, LARGEST) * MARGIN)
+        if largest > 0.0 {
+            (least.clamp(LEAST, LARGEST) / margin, largest.clamp(LEAST, LARGEST) * margin, has_zero)
         } else {
-            (1.0, 10.0)
-        };
-        let (start, end) = (Round::from_below(least), Round::from_above(largest));
-        Self { title: title.into(), scale: Scale::Log { start, end, has_zero } }
+            (1.0, 10.0, has_zero)
+        }
     }
 
     /// From 0 at one end to 1 at the other; a number beyond an end is at that end.
@@ -64,9 +93,9 @@ impl Axis {
         let fraction = match self.scale {
             Scale::Linear { step, steps } => value / step / steps,
             Scale::Log { has_zero: true, .. } if value <= 0.0 => ZERO_AT,
-            Scale::Log { start, end, has_zero } => {
+            Scale::Log { ends: [from, to], has_zero, .. } => {
                 let first = if has_zero { BREAK_END } else { 0.0 };
-                let along = (value.log10() - start.log10()) / (end.log10() - start.log10());
+                let along = (value.log10() - from) / (to - from);
                 first + (1.0 - first) * along.clamp(0.0, 1.0)
             }
         };
@@ -92,12 +121,12 @@ impl Axis {
                 let counts = (0_u8..=u8::MAX).map(f64::from).take_while(|&count| count <= steps);
                 counts.map(|count| count * step).collect()
             }
-            Scale::Log { start, end, has_zero } => {
+            Scale::Log { start, end, ticks, has_zero, .. } => {
                 let decades = end.exponent - start.exponent;
                 let every = (decades + MOST - 1) / MOST;
                 let mut rounds = vec![];
                 for exponent in start.exponent..=end.exponent {
-                    let mantissas: &[u8] = if decades > 2 { &[1] } else { &[1, 2, 5] };
+                    let mantissas: &[u8] = if ticks == Ticks::Powers { &[1] } else { &[1, 2, 5] };
                     rounds.extend(mantissas.iter().map(|&mantissa| Round { exponent, mantissa }));
                 }
                 let is_tick = |round: &Round| {
@@ -107,6 +136,15 @@ impl Axis {
                 zero.into_iter().chain(rounds.into_iter().filter(is_tick).map(Round::value)).collect()
             }
         }
+    }
+}
+
+impl Scale {
+    /// From the round number below to the one above.
+    fn around(least: f64, largest: f64, has_zero: bool) -> Self {
+        let (start, end) = (Round::from_below(least), Round::from_above(largest));
+        let ticks = if end.exponent - start.exponent <= 2 { Ticks::All } else { Ticks::Powers };
+        Self::Log { ends: [start.log10(), end.log10()], start, end, ticks, has_zero }
     }
 }
 
@@ -206,6 +244,17 @@ mod tests {
     }
 
     #[test]
+    fn a_close_axis_ends_by_its_numbers_and_has_ticks_all_the_same() {
+        let close = Axis::close_log("", [1.0, 17.0]);
+        assert_eq!(texts(&close), ["1", "2", "5", "10"]);
+        assert!(close.fraction(1.0) < 0.06 && close.fraction(17.0) > 0.94, "{close:?}");
+        assert_eq!(texts(&Axis::close_log("", [256.0, 16384.0])), ["1000", "10000"]);
+        assert_eq!(texts(&Axis::close_log("", [1e3, 1e6])), ["10³", "10⁴", "10⁵", "10⁶"]);
+        assert_eq!(texts(&Axis::close_log("", [300.0])), ["200", "500"]);
+        assert_eq!(texts(&Axis::close_log("", [1.0])), ["0.5", "1", "2"]);
+    }
+
+    #[test]
     fn zero_stands_apart_on_a_logarithmic_axis() {
         let axis = Axis::log("", [0.0, 1e-6, 1e-2]);
         let broken = axis.broken_between().unwrap();
@@ -216,9 +265,13 @@ mod tests {
 
     #[test]
     fn an_axis_without_numbers_still_has_ends() {
-        for axis in
-            [Axis::linear("", []), Axis::log("", []), Axis::log("", [0.0]), Axis::linear("", [f64::NAN])]
-        {
+        for axis in [
+            Axis::linear("", []),
+            Axis::linear("", [f64::NAN]),
+            Axis::log("", []),
+            Axis::log("", [0.0]),
+            Axis::close_log("", []),
+        ] {
             assert!(axis.ticks().len() >= 2, "{axis:?}");
             assert_eq!(axis.fraction(f64::INFINITY).clamp(0.0, 1.0), axis.fraction(f64::INFINITY));
         }
@@ -230,7 +283,8 @@ mod tests {
             mut values in prop::collection::vec(any::<f64>().prop_map(f64::abs), 1..6)
         ) {
             values.sort_by(f64::total_cmp);
-            for axis in [Axis::linear("", values.clone()), Axis::log("", values.clone())] {
+            let [linear, log] = [Axis::linear("", values.clone()), Axis::log("", values.clone())];
+            for axis in [linear, log, Axis::close_log("", values.clone())] {
                 let finite = values.iter().filter(|value| value.is_finite());
                 let places: Vec<f64> = finite.map(|&value| axis.fraction(value)).collect();
                 prop_assert!(places.iter().all(|place| (0.0..=1.0).contains(place)), "{places:?}");

@@ -30,7 +30,7 @@ impl Bars {
         const HEIGHT: i32 = 320;
         const WIDEST: i32 = 34;
         let frame = Area { left: 66, top: 2 * LINE + 14, right: WIDTH - 20, bottom: HEIGHT - 30 };
-        canvas::draw(HEIGHT, frame, |canvas| {
+        canvas::draw((WIDTH, HEIGHT), frame, |canvas| {
             canvas.y_axis(&self.y)?;
             let items: Vec<_> =
                 self.series.iter().map(|(name, colour)| (Mark::Full, *colour, name.as_str())).collect();

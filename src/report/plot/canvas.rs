@@ -20,13 +20,15 @@ pub(crate) struct PlotError(String);
 /// Pixels from the left and from the top.
 pub(super) type Pixel = (i32, i32);
 
-/// Width of every plot, pixels.
+/// Width of a plot on a page, pixels.
 pub(super) const WIDTH: i32 = 720;
 
 pub(super) struct Canvas<'a> {
     area: DrawingArea<SVGBackend<'a>, Shift>,
     /// Where data are drawn.
     pub(super) frame: Area,
+    /// Of all of it, pixels.
+    pub(super) width: i32,
 }
 
 /// Which end of the words is at the point that they are given.
@@ -48,15 +50,16 @@ pub(crate) enum Mark {
     Stroke,
 }
 
-/// Draws a plot of a height and with a frame, and returns the text of the SVG.
+/// Draws a plot of a width and a height and with a frame, and returns the text of the SVG.
 pub(super) fn draw(
-    height: i32,
+    (width, height): Pixel,
     frame: Area,
     draw: impl FnOnce(&Canvas<'_>) -> Result<(), PlotError>,
 ) -> Result<String, PlotError> {
     let mut text = String::new();
-    let size = (WIDTH.unsigned_abs(), height.unsigned_abs());
-    let canvas = Canvas { area: SVGBackend::with_string(&mut text, size).into_drawing_area(), frame };
+    let size = (width.unsigned_abs(), height.unsigned_abs());
+    let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+    let canvas = Canvas { area, frame, width };
     draw(&canvas)?;
     canvas.area.present().map_err(failed)?;
     drop(canvas);
@@ -73,6 +76,18 @@ fn style(colour: Colour, width: u32) -> ShapeStyle {
 }
 
 impl Canvas<'_> {
+    /// Draws on a part of it, where pixels count from the part's corner.
+    pub(super) fn part(
+        &self,
+        part: &Area,
+        frame: Area,
+        draw: impl FnOnce(&Canvas<'_>) -> Result<(), PlotError>,
+    ) -> Result<(), PlotError> {
+        let width = part.right - part.left;
+        let area = self.area.clone().shrink((part.left, part.top), (width, part.bottom - part.top));
+        draw(&Canvas { area, frame, width })
+    }
+
     pub(super) fn line(&self, points: &[Pixel], colour: Colour, width: u32) -> Result<(), PlotError> {
         let line = ShapeStyle { filled: false, ..style(colour, width) };
         self.area.draw(&PathElement::new(points.to_vec(), line)).map_err(failed)
@@ -113,6 +128,9 @@ impl Canvas<'_> {
         colour: Colour,
         turn: FontTransform,
     ) -> Result<(), PlotError> {
+        if text.is_empty() {
+            return Ok(());
+        }
         let horizontal = match anchor {
             Anchor::Left => HPos::Left,
             Anchor::Middle => HPos::Center,

@@ -1,4 +1,4 @@
-//! Points and lines over two axes, linear or logarithmic, with labels beside them and upright lines to hold them against.
+//! Points and lines over two axes, linear or logarithmic, with labels beside them and lines to hold them against.
 
 use super::axis::Axis;
 use super::canvas::{self, Anchor, Canvas, Mark, PlotError, WIDTH};
@@ -11,6 +11,7 @@ pub(crate) struct Chart {
     pub(crate) y: Axis,
     pub(crate) series: Vec<Series>,
     pub(crate) rules: Vec<Rule>,
+    pub(crate) guides: Vec<Guide>,
 }
 
 /// Points that belong together.
@@ -39,6 +40,13 @@ pub(crate) struct Rule {
     pub(crate) colour: Colour,
 }
 
+/// A faint line from one pair of numbers on the axes to another, with words at its end.
+pub(crate) struct Guide {
+    pub(crate) from: (f64, f64),
+    pub(crate) to: (f64, f64),
+    pub(crate) label: String,
+}
+
 impl Chart {
     /// Draws it.
     ///
@@ -47,15 +55,30 @@ impl Chart {
     pub(crate) fn draw(&self) -> Result<String, PlotError> {
         const HEIGHT: i32 = 400;
         let frame = Area { left: 66, top: 2 * LINE + 14, right: WIDTH - 20, bottom: HEIGHT - 52 };
-        canvas::draw(HEIGHT, frame, |canvas| {
-            canvas.y_axis(&self.y)?;
-            self.draw_rules(canvas)?;
-            canvas.x_axis(&self.x)?;
-            for series in &self.series {
-                self.draw_series(canvas, series)?;
-            }
-            self.draw_labels(canvas)
-        })
+        canvas::draw((WIDTH, HEIGHT), frame, |canvas| self.draw_on(canvas, 0))
+    }
+
+    /// Draws it where there may be something else too. With so many pixels of room right of the frame, that is where labels go:
+    /// no line runs through them there.
+    pub(super) fn draw_on(&self, canvas: &Canvas<'_>, label_room: i32) -> Result<(), PlotError> {
+        canvas.y_axis(&self.y)?;
+        self.draw_rules(canvas)?;
+        canvas.x_axis(&self.x)?;
+        for guide in &self.guides {
+            let ends = [guide.from, guide.to].map(|(x, y)| (canvas.x(&self.x, x), canvas.y(&self.y, y)));
+            canvas.line(&ends, Colour::MUTED, 1)?;
+        }
+        for series in &self.series {
+            self.draw_series(canvas, series)?;
+        }
+        self.draw_labels(canvas, label_room)
+    }
+
+    /// All that is written beside points and lines.
+    pub(super) fn labels(&self) -> impl Iterator<Item = &str> {
+        let points = self.series.iter().flat_map(|series| &series.points).map(|point| &point.label);
+        let labels = points.chain(self.guides.iter().map(|guide| &guide.label));
+        labels.map(String::as_str).filter(|label| !label.is_empty())
     }
 
     /// Labels stand above the frame, in the lower of two rows where there is room.
@@ -65,7 +88,7 @@ impl Chart {
         for rule in &self.rules {
             let x = canvas.x(&self.x, rule.x);
             let half = text_width(&rule.label) / 2;
-            let middle = x.clamp(half, (WIDTH - half).max(half));
+            let middle = x.clamp(half, (canvas.width - half).max(half));
             let row = |row: i32| {
                 let bottom = frame.top - 5 - row * (LINE + 1);
                 Area { left: middle - half, top: bottom - LINE, right: middle + half, bottom }
@@ -96,16 +119,24 @@ impl Chart {
         Ok(())
     }
 
-    fn draw_labels(&self, canvas: &Canvas<'_>) -> Result<(), PlotError> {
-        let points = || self.series.iter().flat_map(|series| &series.points);
+    fn draw_labels(&self, canvas: &Canvas<'_>, room: i32) -> Result<(), PlotError> {
+        let points = self.series.iter().flat_map(|series| &series.points);
+        let points = points.map(|point| ((point.x, point.y), &point.label, Colour::INK));
+        let guides = self.guides.iter().map(|guide| (guide.to, &guide.label, Colour::MUTED));
+        let all = points.chain(guides).map(|((x, y), label, colour)| {
+            let mark = (canvas.x(&self.x, x), canvas.y(&self.y, y));
+            (mark, label.clone(), colour)
+        });
         // Points without a label come last: they take room, and get none.
-        let (named, others): (Vec<&Point>, Vec<&Point>) = points().partition(|point| !point.label.is_empty());
-        let pixel = |point: &&Point| (canvas.x(&self.x, point.x), canvas.y(&self.y, point.y));
-        let marks: Vec<_> = named.iter().map(pixel).collect();
-        let others: Vec<_> = others.iter().map(pixel).collect();
-        let names: Vec<String> = named.iter().map(|point| point.label.clone()).collect();
-        let places = labels::place(&marks, &others, &names, &canvas.frame);
-        for ((name, place), &(x, y)) in names.iter().zip(&places).zip(&marks) {
+        let (named, others): (Vec<_>, Vec<_>) = all.partition(|(_, label, _)| !label.is_empty());
+        let marks: Vec<_> = named.iter().map(|&(mark, ..)| mark).collect();
+        let others: Vec<_> = others.iter().map(|&(mark, ..)| mark).collect();
+        let names: Vec<String> = named.iter().map(|(_, name, _)| name.clone()).collect();
+        let frame = canvas.frame;
+        let leftmost = marks.iter().map(|&(x, _)| x).min().filter(|_| room > 0);
+        let within = Area { left: leftmost.unwrap_or(frame.left), right: frame.right + room, ..frame };
+        let places = labels::place(&marks, &others, &names, &within);
+        for (((x, y), name, colour), place) in named.into_iter().zip(&places) {
             let Area { left, top, right, bottom } = place.area;
             let middle = i32::midpoint(top, bottom);
             if place.needs_line {
@@ -114,7 +145,7 @@ impl Chart {
             }
             // The estimate of a width is rough: words begin on the side of their mark.
             let (at, anchor) = if left > x { (left, Anchor::Left) } else { (right, Anchor::Right) };
-            canvas.words(name, (at, middle), anchor, Colour::INK)?;
+            canvas.words(&name, (at, middle), anchor, colour)?;
         }
         Ok(())
     }
@@ -144,6 +175,7 @@ mod tests {
             x: Axis::log("seconds", points().map(|point| point.x)),
             y: Axis::log("RMSE", points().map(|point| point.y)),
             rules: vec![],
+            guides: vec![],
             series,
         }
     }
@@ -162,7 +194,13 @@ mod tests {
 
     #[test]
     fn a_chart_without_points_is_still_drawn() {
-        let chart = Chart { x: Axis::log("x", []), y: Axis::linear("y", []), series: vec![], rules: vec![] };
+        let chart = Chart {
+            x: Axis::log("x", []),
+            y: Axis::linear("y", []),
+            series: vec![],
+            rules: vec![],
+            guides: vec![],
+        };
         assert!(chart.draw().unwrap().ends_with("</svg>\n"));
     }
 

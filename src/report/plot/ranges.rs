@@ -32,7 +32,7 @@ impl Ranges {
         let rows = |group: &Group| i32::try_from(group.rows.len()).unwrap_or(0) * ROW;
         let bottom = top + self.groups.iter().map(|group| HEADING + rows(group)).sum::<i32>() + ROW / 2;
         let frame = Area { left: 96, top, right: WIDTH - 20, bottom };
-        canvas::draw(bottom + 52, frame, |canvas| {
+        canvas::draw((WIDTH, bottom + 52), frame, |canvas| {
             let legend = [(Mark::Full, "median"), (Mark::Open, "99th percentile"), (Mark::Stroke, "largest")];
             canvas.legend(&legend.map(|(mark, name)| (mark, COLOUR, name)))?;
             canvas.x_axis(&self.x)?;
