@@ -164,7 +164,9 @@ impl Slot {
         let order = node.orders[octant];
         let children = self.children[self.waiting..].first_chunk_mut();
         let places = children.zip(self.enters[self.waiting..].first_chunk_mut());
-        if let (Some((to_children, to_enters)), true) = (places, F::Node::WIDTH == WIDTH) {
+        // Elsewhere a shuffle is a loop of its own.
+        let shuffles = cfg!(target_feature = "avx2") && F::Node::WIDTH == WIDTH;
+        if let (Some((to_children, to_enters)), true) = (places, shuffles) {
             let arrangement = order.reversed(bits);
             arrangement.arrange(&node.children, to_children);
             arrangement.arrange(enters, to_enters);
