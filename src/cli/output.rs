@@ -31,12 +31,8 @@ pub(super) fn result(line: &impl Display) -> Result<(), Failure> {
 /// Says early whether [`json`] could write there, without taking the place of another file of the command.
 pub(super) fn check_json(path: Option<&Path>, others: &[&Path]) -> Result<(), Failure> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(()) };
-    if others.iter().any(|other| clash(path, other)) {
-        let message =
-            format!("--json {}: another file of this command has this name; choose another", path.display());
-        return Err(Failure::Usage(message));
-    }
-    whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })
+    check_distinct_of("--json ", &[path], others)?;
+    probe(path)
 }
 
 /// Says early whether [`svg`] could write there, without taking the place of a file that is read.
@@ -46,16 +42,27 @@ pub(super) fn check_svg(path: Option<&Path>, inputs: &[&Path]) -> Result<(), Fai
         return Err(Failure::Usage(format!("{}: the name of a plot ends in .svg", path.display())));
     }
     check_distinct(&[path], inputs)?;
+    probe(path)
+}
+
+/// Says early whether a file can be written.
+pub(super) fn probe(path: &Path) -> Result<(), Failure> {
     whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_owned(), why })
 }
 
 /// Says early whether files to be written would take each other's place, or that of what is read.
 pub(super) fn check_distinct(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
+    check_distinct_of("", outputs, inputs)
+}
+
+/// The same of the files that an option names.
+fn check_distinct_of(option: &str, outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
     for (index, output) in outputs.iter().enumerate() {
         if inputs.iter().chain(&outputs[..index]).any(|other| clash(output, other)) {
-            let message =
-                format!("{}: another file of this command has this name; choose another", output.display());
-            return Err(Failure::Usage(message));
+            return Err(Failure::Usage(format!(
+                "{option}{}: another file of this command has this name; choose another",
+                output.display()
+            )));
         }
     }
     Ok(())

@@ -86,9 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written: Vec<&Path> = hit_files.iter().flatten().map(PathBuf::as_path).collect();
     let read = [arguments.geometry.as_path(), arguments.rays.as_path()];
     output::check_distinct(&written, &read)?;
-    for path in &written {
-        crate::whole_file::probe(path).map_err(|why| Failure::Write { path: path.to_path_buf(), why })?;
-    }
+    written.iter().try_for_each(|path| output::probe(path))?;
     output::check_json(arguments.json.as_deref(), &[&written[..], &read].concat())?;
 
     let loaded = load::load_geometry(&arguments.geometry)?;

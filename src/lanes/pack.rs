@@ -59,7 +59,8 @@ pub(crate) struct Arrangement {
 }
 
 impl Arrangement {
-    /// `order` names the last `used` of them in 3 bits each, from bit 0 on; a number is wanted if its bit is set in `bits`.
+    /// `order` names `used` of them in 3 bits each, the first lowest. Those whose bits are set in `bits` are wanted, the last
+    /// first.
     #[inline(always)]
     pub(crate) fn reversed(order: u32, used: usize, bits: u32) -> Self {
         let places = (u32x8::splat(order) >> u32x8::new([21, 18, 15, 12, 9, 6, 3, 0])) & u32x8::splat(7);

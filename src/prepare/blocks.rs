@@ -12,6 +12,8 @@ pub(crate) const BLOCK: usize = 4;
 /// | 144–159 | `size` |
 /// | 160–175 | `error_area` |
 /// | 176–191 | `ids` |
+///
+/// Three lines of memory, which it would lie across four of if it did not begin with one.
 #[repr(C, align(64))]
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleBlock {
@@ -30,6 +32,8 @@ pub(crate) struct TriangleBlock {
 /// | 48–63 | `radii` |
 /// | 64–79 | `slack` |
 /// | 80–95 | `ids` |
+///
+/// One and a half lines of memory: it lies across two wherever it begins at a half.
 #[repr(C, align(32))]
 #[derive(Clone, Copy)]
 pub(crate) struct SphereBlock {

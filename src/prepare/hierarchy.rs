@@ -50,6 +50,10 @@ pub(crate) enum Place {
 const COSTS: Costs =
     Costs { node: 1.0, block: [0.8, 0.9, 0.9], room: [BLOCK as f32, BLOCK as f32, 8.0], largest_leaf: 4 };
 
+/// Bytes that memory gives at a time. Nothing that is asked for before it is read fills more than four of them.
+const LINE: usize = 64;
+const _: () = assert!(size_of::<Node>() <= 4 * LINE && BLOCK * size_of::<PolygonFace>() <= 4 * LINE);
+
 /// Lanes may read so far beyond a polygon's last corner.
 const CORNERS_BEYOND: usize = 16;
 
@@ -110,8 +114,16 @@ impl Hierarchy {
             size_of::<TriangleBlock>(),
             size_of::<PolygonFace>() >> COUNT_BITS,
         ];
-        // Where the last line of each begins; of polygons, of as many as a leaf may have.
-        const LAST: [usize; 4] = [192, 64, 128, 192];
+        /// Where the last line begins of what begins with a line.
+        const fn last_line(size: usize) -> usize {
+            (size - 1) / LINE * LINE
+        }
+        const LAST: [usize; 4] = [
+            last_line(size_of::<Node>()),
+            last_line(size_of::<SphereBlock>()),
+            last_line(size_of::<TriangleBlock>()),
+            last_line(BLOCK * size_of::<PolygonFace>()),
+        ];
         let bases = [
             self.nodes.as_ptr().cast::<u8>(),
             self.spheres.as_ptr().cast(),
@@ -121,7 +133,7 @@ impl Hierarchy {
         let (kind, index) = child.parts();
         let first = bases[kind].wrapping_add(SIZES[kind] * index);
         // To ask for one line twice costs less than to fetch one that nobody reads.
-        for line in [0, 64, 128, 192] {
+        for line in [0, LINE, 2 * LINE, 3 * LINE] {
             prefetch(first.wrapping_add(LAST[kind].min(line)));
         }
     }

@@ -1,4 +1,5 @@
-//! What it took to find hits: counted, not timed, so the same on any machine and at any time.
+//! What it took to find hits: counted, not timed, so the same at any time and on any machine with as many lanes and threads. With
+//! threads it changes a little, since each is given a share of the rays and puts those together that it has.
 
 use crate::traverse::{Counts, LaneUse};
 use serde::Serialize;

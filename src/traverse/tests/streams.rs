@@ -1,6 +1,7 @@
 //! Streams with more rays than the other tests have: lists of every length, full parts and several, windows and what is sorted
 //! before.
 
+use super::super::{RUN, batch};
 use super::Random;
 use super::rays::{assert_same_as_all, end, shuffled};
 use super::scenes::mixed;
@@ -36,6 +37,42 @@ fn more_rays_than_a_window_in_no_order_find_what_a_loop_finds() {
     let rays = shuffled(random, WINDOW + 3000);
     let (_, hits) = assert_same_as_all(&prepared, &rays, false);
     assert!(hits > 1000, "{hits}");
+}
+
+/// Shares that threads take of rays in an order, of whole runs.
+#[test]
+fn threads_get_shares_alike_of_rays_in_an_order() {
+    for count in [1, 100 * RUN, WINDOW - 1, WINDOW, 3 * WINDOW + 1, 40 * WINDOW] {
+        let along: Vec<f32> = (0..count).map(|row| row as f32).collect();
+        let level = vec![0.0; count];
+        for threads in [1, 2, 3, 16] {
+            let share = batch([&along, &level, &level], threads);
+            assert!(share <= WINDOW && share.is_multiple_of(RUN), "{share}");
+            let shares = count.div_ceil(share);
+            if threads == 1 {
+                assert_eq!(shares, count.div_ceil(WINDOW), "{count} rays");
+            } else if count >= threads * WINDOW {
+                assert!(shares >= 4 * threads, "{shares} shares of {count} rays for {threads} threads");
+                // The last is smaller by less than a run for each of the others.
+                assert!(
+                    count - (shares - 1) * share + shares * RUN > share,
+                    "{count} rays in shares of {share}"
+                );
+            }
+        }
+    }
+}
+
+/// Of rays in no order each thread gets one share, the larger the better.
+#[test]
+fn threads_get_one_share_each_of_rays_in_no_order() {
+    let count = 40 * WINDOW;
+    let anywhere: Vec<f32> = (0..count).map(|row| (row * 7919 % count) as f32).collect();
+    let level = vec![0.0; count];
+    for threads in [2, 3, 16] {
+        let share = batch([&anywhere, &level, &level], threads);
+        assert_eq!(count.div_ceil(share), threads);
+    }
 }
 
 /// Of each octant the order holds all children, and puts those that are farther back along it later.
