@@ -6,6 +6,7 @@
 //! sum across lanes.
 
 #[cfg(target_arch = "x86_64")]
+mod compress;
 pub(crate) mod cpu;
 mod isa;
 mod pack;
@@ -88,6 +89,9 @@ pub(crate) trait Lanes:
 pub(crate) trait Mask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
 {
+    /// No lane.
+    const NONE: Self;
+
     /// True where one is and the other is not.
     #[inline(always)]
     fn xor(self, other: Self) -> Self {

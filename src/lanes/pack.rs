@@ -1,5 +1,6 @@
 //! Lanes put side by side that were chosen by a mask, for lists and queues.
 
+use super::compress::{compressed_8, compressed_16};
 use bytemuck::Pod;
 use wide::{i32x4, i32x8, i32x16, u32x8};
 
@@ -32,8 +33,7 @@ impl Packing {
         const { assert!(size_of::<T>() == 4) };
         match (from.first_chunk::<8>(), to.first_chunk_mut::<8>()) {
             (Some(from), Some(to)) if cfg!(target_feature = "avx2") => {
-                let numbers: u32x8 = bytemuck::cast(*from);
-                *to = bytemuck::cast(numbers.shuffle(u32x8::new(CHOSEN[self.bits as usize])));
+                *to = bytemuck::cast(compressed_8(bytemuck::cast(*from), self.bits));
             }
             _ => self.pack_each(from, to),
         }
@@ -66,7 +66,7 @@ impl Arrangement {
         let places = (u32x8::splat(order) >> u32x8::new([21, 18, 15, 12, 9, 6, 3, 0])) & u32x8::splat(7);
         let is_wanted = (u32x8::splat(bits) >> places) << u32x8::splat(31);
         let wanted = is_wanted.to_bitmask() & (255 << (8 - used)) & 255;
-        let numbers = places.shuffle(u32x8::new(CHOSEN[wanted as usize]));
+        let numbers = bytemuck::cast(compressed_8(bytemuck::cast(places), wanted));
         Self { numbers, count: wanted.count_ones() as usize }
     }
 
@@ -90,34 +90,14 @@ pub(super) trait Packed {
     fn pack(self, bits: u32, to: &mut [u32]);
 }
 
-/// For each mask of eight lanes, those that are in it, in order; then anything.
-static CHOSEN: [[u32; 8]; 256] = {
-    let mut table = [[0; 8]; 256];
-    let mut mask = 0;
-    while mask < 256 {
-        let (mut count, mut lane) = (0, 0);
-        while lane < 8 {
-            if mask >> lane & 1 == 1 {
-                table[mask][count] = lane;
-                count += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
-};
-
 impl Packed for i32x8 {
     #[inline(always)]
     fn pack(self, bits: u32, to: &mut [u32]) {
         // Through `Packing`, which asks where slices end, streams of diffuse rays took 1.06 times as long, 2026-11-23.
-        let ids: u32x8 = bytemuck::cast(self);
         if cfg!(target_feature = "avx2") {
-            let packed = ids.shuffle(u32x8::new(CHOSEN[bits as usize & 255]));
-            to[..8].copy_from_slice(&packed.to_array());
+            to[..8].copy_from_slice(bytemuck::cast_slice(&compressed_8(self, bits).to_array()));
         } else {
-            pack_each(&ids.to_array(), bits, to);
+            pack_each(bytemuck::cast_ref::<_, [u32; 8]>(&self.to_array()), bits, to);
         }
     }
 }
@@ -132,9 +112,7 @@ impl Packed for i32x4 {
 impl Packed for i32x16 {
     #[inline(always)]
     fn pack(self, bits: u32, to: &mut [u32]) {
-        let [low, high]: [i32x8; 2] = bytemuck::cast(self);
-        low.pack(bits & 255, to);
-        high.pack(bits >> 8, &mut to[(bits & 255).count_ones() as usize..]);
+        to[..16].copy_from_slice(bytemuck::cast_slice(&compressed_16(self, bits).to_array()));
     }
 }
 

@@ -3,6 +3,8 @@
 use super::{Double, Lanes, Mask, RECORD, Record, Single};
 
 impl Mask for bool {
+    const NONE: Self = false;
+
     #[inline(always)]
     fn any(self) -> bool {
         self

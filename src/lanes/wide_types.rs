@@ -12,6 +12,8 @@ const COUNTING: [f32; 16] = [0., 1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 1
 macro_rules! many_lanes {
     ($lanes:ty, $scalar:ty, $width:literal) => {
         impl Mask for $lanes {
+            const NONE: Self = <$lanes>::ZERO;
+
             #[inline(always)]
             fn any(self) -> bool {
                 <$lanes>::any(self)
