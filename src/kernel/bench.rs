@@ -147,10 +147,10 @@ fn meet_triangles<F: Single>(rays: &Rays, triangles: &[[[f32; 3]; 3]], nearest: 
         let vertices = [splat(a), splat(b), splat(c)];
         for row in groups::<F>() {
             let space = rays.space::<F>(row);
-            let meeting = triangle::meet(&space, vertices, zero);
-            if meeting.inside.any() {
+            let meeting = triangle::meet(&space, vertices);
+            if meeting.inside(zero).any() {
                 let t = meeting.t(&space);
-                pairs += keep(t, meeting.inside & t.gt(zero), &mut nearest[row..]);
+                pairs += keep(t, meeting.inside(zero) & t.gt(zero), &mut nearest[row..]);
             }
         }
     }

@@ -31,8 +31,8 @@ impl<L: Lanes> Outline<L> {
         L: Lanes<Scalar = f32>,
     {
         Self {
-            odd: L::first(0),
-            unclear: L::first(0),
+            odd: L::Mask::NONE,
+            unclear: L::Mask::NONE,
             least_z: L::splat(f32::INFINITY),
             largest_z: L::splat(f32::NEG_INFINITY),
         }

@@ -6,10 +6,11 @@ use crate::lanes::{Lanes, Mask};
 
 /// Where a ray meets the plane of a triangle, and whether that is inside.
 pub(crate) struct Meeting<L: Lanes> {
-    /// Of what falls on an edge, one of the two triangles there holds it.
-    pub(crate) inside: L::Mask,
-    /// The least and the largest of the areas that the ray's foot spans with the edges.
+    /// Signed areas that the ray's foot spans with the edges that lie opposite to the corners.
+    areas: [L; 3],
+    /// The least, the middle and the largest of them.
     least: L,
+    middle: L,
     largest: L,
     /// Distance of the ray's origin from the plane, times twice the triangle's area; of either sign.
     pub(crate) volume: L,
@@ -27,7 +28,7 @@ pub(crate) struct Meeting<L: Lanes> {
 ///
 /// Vertices are in the ray's order of axes.
 #[inline(always)]
-pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) -> Meeting<L> {
+pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3]) -> Meeting<L> {
     let [a, b, c] = [ray.see(vertices[0]), ray.see(vertices[1]), ray.see(vertices[2])];
     let (u, v, w) = (cross(&b, &c), cross(&c, &a), cross(&a, &b));
     let area = u + v + w;
@@ -35,16 +36,29 @@ pub(crate) fn meet<L: Lanes>(ray: &RaySpace<L>, vertices: [[L; 3]; 3], zero: L) 
     let (lesser, greater) = (u.min(v), u.max(v));
     let (least, largest) = (lesser.min(w), greater.max(w));
     let middle = lesser.max(greater.min(w));
-    let mut inside = least.gt(zero) | largest.lt(zero);
-    let tied = least.eq(zero) | middle.eq(zero) | largest.eq(zero);
-    if tied.any() {
-        let odd = crosses(&b, &c, u, zero).xor(crosses(&c, &a, v, zero)).xor(crosses(&a, &b, w, zero));
-        inside = inside | (tied & odd);
-    }
-    Meeting { inside, least, largest, volume, seen_double_area: area, corners: [a, b, c] }
+    Meeting { areas: [u, v, w], least, middle, largest, volume, seen_double_area: area, corners: [a, b, c] }
 }
 
 impl<L: Lanes> Meeting<L> {
+    /// Where [`Self::inside`] may hold: there, and where an area is 0.
+    #[inline(always)]
+    pub(crate) fn is_inside_or_tied(&self, zero: L) -> L::Mask {
+        self.least.ge(zero) | self.largest.le(zero) | self.middle.eq(zero)
+    }
+
+    /// Of what falls on an edge, one of the two triangles there holds it.
+    #[inline(always)]
+    pub(crate) fn inside(&self, zero: L) -> L::Mask {
+        let inside = self.least.gt(zero) | self.largest.lt(zero);
+        let tied = self.least.eq(zero) | self.middle.eq(zero) | self.largest.eq(zero);
+        if !tied.any() {
+            return inside;
+        }
+        let ([a, b, c], [u, v, w]) = (&self.corners, self.areas);
+        let odd = crosses(b, c, u, zero).xor(crosses(c, a, v, zero)).xor(crosses(a, b, w, zero));
+        inside | (tied & odd)
+    }
+
     /// Whether the foot may be inside, and whether it is for certain; `size` is the length of the longest edge.
     #[inline(always)]
     pub(crate) fn may_be_inside(&self, size: L) -> (L::Mask, L::Mask)

@@ -30,7 +30,8 @@ pub(super) struct Start<F: Single> {
     pub(super) t_min: F,
 }
 
-/// A hit of a primitive, in each lane.
+/// A hit of a primitive, in each lane. Where it is said that there is none, no lane that is asked for hits or is unclear; of
+/// lanes that are not asked for nothing is said.
 #[derive(Clone, Copy)]
 pub(super) struct Candidate<F: Single> {
     pub(super) t: F,
@@ -39,13 +40,6 @@ pub(super) struct Candidate<F: Single> {
     pub(super) hit: F::Mask,
     /// Lanes in which f32 cannot tell: `exact` decides, and `hit` is false.
     pub(super) unclear: F::Mask,
-}
-
-impl<F: Single> Candidate<F> {
-    fn none() -> Self {
-        let (zero, none) = (F::splat(0.0), F::first(0));
-        Self { t: zero, error: zero, hit: none, unclear: none }
-    }
 }
 
 /// Ray space, the line, and how far a surface may seem to be from where it is: `bounds::PADDING` of the coordinates that
@@ -62,19 +56,25 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
     space: &RaySpace<F>,
     padding: F,
     vertices: [[F; 3]; 3],
-    [size, error_area]: [F; 2],
-    start: Start<F>,
-) -> Candidate<F> {
+    sizes: impl FnOnce() -> [F; 2],
+    (asked, start): (F::Mask, Start<F>),
+) -> Option<Candidate<F>> {
     let zero = F::splat(0.0);
-    let meeting = triangle::meet(space, vertices, zero);
+    let meeting = triangle::meet(space, vertices);
+    if !DEPARTING && !(meeting.is_inside_or_tied(zero) & asked).any() {
+        return None;
+    }
+    let [size, error_area] = sizes();
+    let asked = asked & !start.own;
     let (may_be_inside, inside) = if DEPARTING {
         let (may_be, is) = meeting.may_be_inside(size);
-        (may_be & !start.own, is & !start.own)
+        (may_be & asked, is & asked)
     } else {
-        (meeting.inside, meeting.inside)
+        let inside = meeting.inside(zero) & asked;
+        (inside, inside)
     };
-    if !may_be_inside.any() {
-        return Candidate::none();
+    if DEPARTING && !may_be_inside.any() {
+        return None;
     }
     let touches = meeting.touches(size);
     let t = meeting.t(space);
@@ -82,7 +82,7 @@ pub(super) fn triangle<F: Single, const DEPARTING: bool>(
     let unclear = may_be_inside & (touches | !inside);
     // cos θ·|d| = |seen area·d_z| / area. Seen so nearly edge-on that the area may be nothing but rounding, t may be anything.
     let error = padding * error_area * space.t_per_z.abs() / meeting.least_seen_area(padding, zero);
-    Candidate { t, error, hit, unclear }
+    Some(Candidate { t, error, hit, unclear })
 }
 
 #[inline(always)]
@@ -91,25 +91,25 @@ pub(super) fn sphere<F: Single, const DEPARTING: bool>(
     padding: F,
     center: Vector<F>,
     [radius, slack]: [F; 2],
-    start: Start<F>,
-) -> Candidate<F> {
+    (asked, start): (F::Mask, Start<F>),
+) -> Option<Candidate<F>> {
     let zero = F::splat(0.0);
     let meeting = sphere::meet(line, center, radius * radius, zero);
-    if !(meeting.meets | start.own).any() {
-        return Candidate::none();
+    if !((meeting.meets | start.own) & asked).any() {
+        return None;
     }
     // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
     let error = (padding + padding) * radius / (meeting.half_t * line.a);
     let (t, hit) = meeting.nearest(start.t_min);
     let touches = meeting.touches(line, slack);
     if !DEPARTING {
-        return Candidate { t, error, hit: hit & !touches, unclear: touches };
+        return Some(Candidate { t, error, hit: hit & !touches, unclear: touches });
     }
     let touches = touches & !start.own;
     let far_side = meeting.far_side();
     let own_hit = start.own & start.inward & far_side.gt(zero);
     let hit = own_hit | (!start.own & !touches & hit);
-    Candidate { t: F::select(start.own, far_side, t), error, hit, unclear: touches }
+    Some(Candidate { t: F::select(start.own, far_side, t), error, hit, unclear: touches })
 }
 
 /// `plane` is a point and the normal; `outline` has taken in all edges.

@@ -10,7 +10,7 @@ pub(super) const WIDEST_SLOPES: f32 = 0.5;
 
 /// The order of axes and the signs of the directions, if all have the same; of columns as long as whole lanes.
 pub(super) fn common_order<F: Single>(direction: [&[f32]; 3]) -> Option<([usize; 3], [bool; 3])> {
-    let none = F::first(0);
+    let none = F::Mask::NONE;
     let (mut negative, mut positive) = ([none; 3], [none; 3]);
     let mut fastest = [none; 3];
     let zero = F::splat(0.0);

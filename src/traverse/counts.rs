@@ -28,9 +28,15 @@ impl LaneUse {
     /// One call.
     #[inline(always)]
     pub(crate) fn add(&mut self, lanes: usize, used: usize) {
-        self.calls += 1;
-        self.lanes += lanes as u64;
-        self.used += used as u64;
+        self.add_runs(1, lanes, used);
+    }
+
+    /// Calls that are alike.
+    #[inline(always)]
+    pub(crate) fn add_runs(&mut self, calls: usize, lanes: usize, used: usize) {
+        self.calls += calls as u64;
+        self.lanes += (calls * lanes) as u64;
+        self.used += (calls * used) as u64;
     }
 
     /// Lanes in use in a call, in the mean; none where nothing was called.

@@ -35,20 +35,33 @@ pub(super) trait RayLanes<F: Single> {
         mask: F::Mask,
         at: (Spot, u32),
     );
+}
 
-    /// Which rays start on a primitive, and which go inside what they start on.
+/// Where rays start.
+struct Starts<F: Single> {
+    /// For those that start on primitives, on which, and which go inside.
+    departures: Option<(F::Ids, F::Mask)>,
+    t_min: F,
+}
+
+impl<F: Single> Starts<F> {
     #[inline(always)]
-    fn start<const DEPARTING: bool>(&self, id: u32) -> Start<F> {
+    fn of<const DEPARTING: bool>(rays: &impl RayLanes<F>) -> Self {
         if !DEPARTING {
-            let none = F::first(0);
-            return Start { own: none, inward: none, t_min: self.t_min() };
+            return Self { departures: None, t_min: rays.t_min() };
         }
-        let departure = self.departure();
-        Start {
-            own: F::ids_eq(F::ids_half(departure), F::splat_ids(id)),
-            inward: F::ids_odd(departure),
-            t_min: F::splat(0.0),
-        }
+        let departure = rays.departure();
+        let departures = Some((F::ids_half(departure), F::ids_odd(departure)));
+        Self { departures, t_min: F::splat(0.0) }
+    }
+
+    /// As a primitive sees it.
+    #[inline(always)]
+    fn on(&self, id: u32) -> Start<F> {
+        let none = F::Mask::NONE;
+        let (own, inward) =
+            self.departures.map_or((none, none), |(ids, inward)| (F::ids_eq(ids, F::splat_ids(id)), inward));
+        Start { own, inward, t_min: self.t_min }
     }
 }
 
@@ -93,19 +106,24 @@ fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     counts: &mut Counts,
 ) {
     let block = &hierarchy.triangles[index];
-    let (space, padding) = (rays.space::<DEPARTING>(), rays.padding());
+    let (space, padding, starts) = (rays.space::<DEPARTING>(), rays.padding(), Starts::of::<DEPARTING>(rays));
     let [x, y, z] = rays.axes();
+    let mut tested = 0;
     for (lane, id) in asked::<ANY>(hierarchy, &block.ids).filter(|(lane, _)| in_sight >> lane & 1 == 1) {
         let [a, b, c] = &block.vertices;
         let corner =
             |of: &[[f32; BLOCK]; 3]| [F::splat(of[x][lane]), F::splat(of[y][lane]), F::splat(of[z][lane])];
         let vertices = [corner(a), corner(b), corner(c)];
-        let start = rays.start::<DEPARTING>(id);
-        let sizes = [F::splat(block.size[lane]), F::splat(block.error_area[lane])];
-        let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
-        counts.triangles.add(F::WIDTH, used);
-        rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::triangle(index, lane), id));
+        let sizes = || [F::splat(block.size[lane]), F::splat(block.error_area[lane])];
+        let start = starts.on(id);
+        tested += 1;
+        if let Some(candidate) =
+            candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, (mask, start))
+        {
+            rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::triangle(index, lane), id));
+        }
     }
+    counts.triangles.add_runs(tested, F::WIDTH, used);
 }
 
 #[inline(always)]
@@ -117,15 +135,20 @@ fn spheres<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     counts: &mut Counts,
 ) {
     let block = &hierarchy.spheres[index];
-    let (line, padding) = (rays.line::<DEPARTING>(), rays.padding());
+    let (line, padding, starts) = (rays.line::<DEPARTING>(), rays.padding(), Starts::of::<DEPARTING>(rays));
+    let mut tested = 0;
     for (lane, id) in asked::<ANY>(hierarchy, &block.ids) {
         let center = Vector::splat(block.centers.map(|column| column[lane]));
-        let start = rays.start::<DEPARTING>(id);
+        let start = starts.on(id);
         let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
-        let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
-        counts.spheres.add(F::WIDTH, used);
-        rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::sphere(index, lane), id));
+        tested += 1;
+        if let Some(candidate) =
+            candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, (mask, start))
+        {
+            rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::sphere(index, lane), id));
+        }
     }
+    counts.spheres.add_runs(tested, F::WIDTH, used);
 }
 
 #[inline(always)]
@@ -188,7 +211,7 @@ fn polygon<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     }
     let view = View { space, line: rays.line::<DEPARTING>(), padding: rays.padding() };
     let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
-    let start = rays.start::<DEPARTING>(face.id);
+    let start = Starts::of::<DEPARTING>(rays).on(face.id);
     let candidate = candidate::polygon::<F, DEPARTING>(&view, plane, &outline, F::splat(face.slack), start);
     rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::polygon(index), face.id));
 }

@@ -284,15 +284,19 @@ impl Target<'_> {
         let ray = self.ray;
         let block = &self.hierarchy.triangles[index];
         let (space, padding) = (ray.space::<F, DEPARTING>(), F::splat(ray.padding));
+        let all = !F::Mask::NONE;
         for first in (0..BLOCK).step_by(F::WIDTH) {
             let [a, b, c] = &block.vertices;
             let vertices =
                 [turned(a, ray.axes, first), turned(b, ray.axes, first), turned(c, ray.axes, first)];
             let start = ray.start(F::load_ids(&block.ids[first..]));
-            let sizes = [F::load(&block.size[first..]), F::load(&block.error_area[first..])];
-            let candidate = candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, start);
+            let sizes = || [F::load(&block.size[first..]), F::load(&block.error_area[first..])];
             counts.triangles.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
-            self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));
+            if let Some(candidate) =
+                candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, (all, start))
+            {
+                self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));
+            }
         }
     }
 
@@ -305,14 +309,18 @@ impl Target<'_> {
         let ray = self.ray;
         let block = &self.hierarchy.spheres[index];
         let (line, padding) = (ray.line::<F, DEPARTING>(), F::splat(ray.padding));
+        let all = !F::Mask::NONE;
         for first in (0..BLOCK).step_by(F::WIDTH) {
             let [x, y, z] = turned(&block.centers, [0, 1, 2], first);
             let start = ray.start(F::load_ids(&block.ids[first..]));
             let sizes = [F::load(&block.radii[first..]), F::load(&block.slack[first..])];
             let center = Vector::new(x, y, z);
-            let candidate = candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, start);
             counts.spheres.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
-            self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::sphere(index, first + lane));
+            if let Some(candidate) =
+                candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, (all, start))
+            {
+                self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::sphere(index, first + lane));
+            }
         }
     }
 

@@ -15,7 +15,7 @@ pub(super) fn holds<D: Double>(corners: &[Vec3], points: Vector<D>, normal: DVec
         let corner: &[f32; 3] = corner.as_ref();
         [u, v].map(|axis| D::splat(f64::from(corner[axis])) - points[axis])
     };
-    let mut is_inside = D::first(0);
+    let mut is_inside = D::Mask::NONE;
     let mut from = corners.last().map_or([zero; 2], seen);
     for corner in corners {
         let to = seen(corner);

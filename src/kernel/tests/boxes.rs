@@ -81,10 +81,10 @@ proptest! {
         let corners = &corners[..3];
         let space = sight::space::<f32>(&[ray]);
         let turned = [0, 1, 2].map(|at| ray.axes().map(|axis| corners[at].as_vec3()[axis]));
-        let found = triangle::meet(&space, turned, 0.0);
+        let found = triangle::meet(&space, turned);
         // What only looks like a hit is left to the box.
         let is_real = !is_a_line(&ray, [corners[0], corners[1], corners[2]]);
-        if found.inside && found.t(&space) > 0.0 && is_real {
+        if found.inside(0.0) && found.t(&space) > 0.0 && is_real {
             enters(&ray, bounds_of(corners))?;
         }
     }

@@ -121,9 +121,8 @@ fn t_of_needles_is_within_six_roundings_of_their_length_squared_by_their_width()
             numbers.vector().reject_from(normal).normalize_or_zero() + numbers.scale(-8.0, 0.0) * normal;
         let ray = Sight::new(target + numbers.scale(-4.0, 2.0) * way, -way);
         let (space, axes) = (sight::space::<f32>(&[ray]), ray.axes());
-        let found =
-            triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner.as_vec3()[axis])), 0.0);
-        if !found.inside {
+        let found = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner.as_vec3()[axis])));
+        if !found.inside(0.0) {
             continue;
         }
         let height = normal.dot(ray.o() + f64::from(found.t(&space)) * ray.d() - a).abs();

@@ -54,9 +54,9 @@ fn answers<F: Single>(pairs: &[Pair]) -> Vec<(&'static str, [u32; MOST])> {
     let turned = points.map(|Vector { x, y, z }| axes.map(|axis| [x, y, z][axis]));
 
     let mut answers = Vec::new();
-    let triangle = triangle::meet(&space, turned, zero);
+    let triangle = triangle::meet(&space, turned);
     answers.push(("triangle t", number(triangle.t(&space))));
-    answers.push(("triangle inside", truth(triangle.inside)));
+    answers.push(("triangle inside", truth(triangle.inside(zero))));
     answers.push(("triangle volume", number(triangle.volume)));
 
     let radius: F = sight::lanes(pairs, |pair| pair.radius);

@@ -85,9 +85,9 @@ fn moller_and_trumbore_s_test_agrees_with_the_engine_s_away_from_edges() {
     for corners in [corners, [corners[1], corners[0], corners[2]]] {
         for ray in rays() {
             let (space, axes) = (sight::space::<f32>(&[ray]), ray.axes());
-            let meeting = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner[axis])), 0.0);
+            let meeting = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner[axis])));
             let t = meeting.t(&space);
-            let engines = answer((t, meeting.inside && t > 0.0));
+            let engines = answer((t, meeting.inside(0.0) && t > 0.0));
             let line = [ray.origin, ray.direction].map(Vector::splat);
             let found = answer(moller_trumbore::nearest(line, corners.map(Vector::splat), 0.0, 1.0));
             match (engines, found) {

@@ -52,7 +52,7 @@ fn length_by_width([a, b, c]: &[DVec3; 3]) -> f64 {
 fn meet(case: &Case) -> triangle::Meeting<f32> {
     let space = sight::space::<f32>(&[case.ray]);
     let corners = case.corners.map(|corner| case.ray.axes().map(|axis| corner.as_vec3()[axis]));
-    triangle::meet(&space, corners, 0.0)
+    triangle::meet(&space, corners)
 }
 
 /// What a start's rounding to f32 left out, as a share of it.
@@ -81,7 +81,7 @@ fn from_start(case: &Case, low: DVec3) -> (triangle::Meeting<f32>, FaceMeeting, 
     let mut space = sight::space::<f32>(&[case.ray]);
     space.origin_low = Some(axes.map(|axis| low[axis]));
     let corners = case.corners.map(DVec3::as_vec3);
-    let found = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner[axis])), 0.0);
+    let found = triangle::meet(&space, corners.map(|corner| axes.map(|axis| corner[axis])));
     let mut line = case.ray.judged();
     line.origin += low.as_dvec3();
     let t = found.t(&space);
@@ -95,7 +95,7 @@ proptest! {
     fn inside_is_the_truth_away_from_edges(case in case()) {
         let clear = distance_from_edges(&case.ray, &case.corners) > 6.0 * U * reach(&case.ray, &case.corners);
         if clear && !is_a_line(&case.ray, case.corners) {
-            prop_assert_eq!(meet(&case).inside, truth(&case).seen == Seen::Inside);
+            prop_assert_eq!(meet(&case).inside(0.0), truth(&case).seen == Seen::Inside);
         }
     }
 
@@ -113,7 +113,7 @@ proptest! {
     fn t_is_within_its_bound_of_the_truth(case in case()) {
         let found = meet(&case);
         let plane = certified::plane_t(&case.ray.judged(), &singles(&case.corners));
-        if let (true, Some(expected)) = (found.inside, plane) {
+        if let (true, Some(expected)) = (found.inside(0.0), plane) {
             let off = expected.distance(f64::from(found.t(&sight::space(&[case.ray])))) * case.ray.d().length();
             let cosine = cosine(&case.ray, &case.corners);
             let bound = 6.0 * U * (reach(&case.ray, &case.corners) + length_by_width(&case.corners)) / cosine;
@@ -136,7 +136,7 @@ proptest! {
     #[test]
     fn t_never_leaves_the_range_of_the_corners(case in case()) {
         let found = meet(&case);
-        if found.inside {
+        if found.inside(0.0) {
             let third = case.ray.third();
             let t = case.corners.map(|corner| (corner - case.ray.o())[third] / case.ray.d()[third]);
             let (least, largest) = (t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2]));
@@ -151,9 +151,9 @@ proptest! {
     #[test]
     fn inside_does_not_depend_on_the_order_of_the_corners(case in case()) {
         let [a, b, c] = case.corners;
-        let expected = meet(&case).inside;
+        let expected = meet(&case).inside(0.0);
         for corners in [[b, c, a], [c, a, b], [c, b, a], [b, a, c], [a, c, b]] {
-            let inside = meet(&Case { corners, ..case }).inside;
+            let inside = meet(&Case { corners, ..case }).inside(0.0);
             // The area is a sum of three, so only its being 0 may turn on their order.
             prop_assert!(inside == expected || area_is_lost(&case), "{corners:?}");
         }

@@ -249,7 +249,7 @@ impl Packet {
 
     /// As rays from an eye have.
     fn has_one_origin<F: Single>(&self) -> bool {
-        let mut differs = F::first(0);
+        let mut differs = F::Mask::NONE;
         for column in &self.origin {
             let first = F::splat(column[0]);
             for row in (0..PACKET).step_by(F::WIDTH) {

@@ -83,10 +83,15 @@ impl Query {
                     let block = &hierarchy.triangles[index];
                     for (lane, &id) in block.ids.iter().enumerate().filter(|(_, id)| **id != NOTHING) {
                         let corners = block.vertices.map(|corner| axes.map(|axis| corner[axis][lane]));
-                        let sizes = [block.size[lane], block.error_area[lane]];
-                        let found =
-                            candidate::triangle::<f32, DEPARTING>(&space, padding, corners, sizes, start(id));
-                        offer(found, Spot::triangle(index, lane));
+                        let sizes = || [block.size[lane], block.error_area[lane]];
+                        let found = candidate::triangle::<f32, DEPARTING>(
+                            &space,
+                            padding,
+                            corners,
+                            sizes,
+                            (true, start(id)),
+                        );
+                        found.into_iter().for_each(|found| offer(found, Spot::triangle(index, lane)));
                     }
                 }
                 Place::Spheres(index) => {
@@ -94,9 +99,14 @@ impl Query {
                     for (lane, &id) in block.ids.iter().enumerate().filter(|(_, id)| **id != NOTHING) {
                         let center = Vector::splat(block.centers.map(|column| column[lane]));
                         let sizes = [block.radii[lane], block.slack[lane]];
-                        let found =
-                            candidate::sphere::<f32, DEPARTING>(&line, padding, center, sizes, start(id));
-                        offer(found, Spot::sphere(index, lane));
+                        let found = candidate::sphere::<f32, DEPARTING>(
+                            &line,
+                            padding,
+                            center,
+                            sizes,
+                            (true, start(id)),
+                        );
+                        found.into_iter().for_each(|found| offer(found, Spot::sphere(index, lane)));
                     }
                 }
                 Place::Polygons(first, count) => {

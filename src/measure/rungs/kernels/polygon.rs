@@ -97,7 +97,7 @@ fn along_axis<F: Single>(lane: &Lane<'_>) -> (F, F::Mask) {
     let [u, v, _] = axes_from(lane.shape().steepest);
     let kept = [[lane.load(u), lane.load(v)], [lane.load(3 + u), lane.load(3 + v)]];
     let foot = axis_polygon::meet_plane(line(lane), plane(lane), kept);
-    let mut inside = F::first(0);
+    let mut inside = F::Mask::NONE;
     if let Some(last) = lane.corners.last() {
         let mut from = [lane.coordinate(last, u), lane.coordinate(last, v)];
         for corner in lane.corners {

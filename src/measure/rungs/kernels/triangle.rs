@@ -69,9 +69,9 @@ impl lanes::Job for Test<'_> {
                     shear: [lane.load(6), lane.load(7)],
                     t_per_z: lane.load(8),
                 };
-                let meeting = triangle::meet(&space, vertices::<F>(lane), zero);
+                let meeting = triangle::meet(&space, vertices::<F>(lane));
                 let t = meeting.t(&space);
-                (t, meeting.inside & t.gt(zero))
+                (t, meeting.inside(zero) & t.gt(zero))
             }),
         }
     }
