@@ -40,7 +40,7 @@ pub(super) fn build(mut references: Vec<Reference>, costs: &Costs) -> BinaryTree
     BinaryTree { references, forks }
 }
 
-/// Parts a group that is not empty down to single items, and returns what it costs.
+/// Parts a group that is not empty, down to single items or to what stays whole, and returns what it costs.
 fn grow(
     references: &mut [Reference],
     forks: &mut [Fork],
@@ -55,6 +55,10 @@ fn grow(
     let area = area_of(bounds);
     let fits = references.len() <= costs.largest_leaf.max(1) as usize && spread.group.is_of_one_kind();
     let as_leaf = if fits { area * f64::from(costs.of_weights(spread.group.weights)) } else { f64::INFINITY };
+    if fits && costs.stays_whole[references[0].kind() as usize] {
+        *fork = Fork { bounds, left: 1, choices: Choices::LEAF };
+        return LeastCosts::of_leaf(as_leaf);
+    }
     let as_node = area * f64::from(costs.node);
     let deep = is_deep(depth, references.len());
     if let ([one, other], false) = (&*references, deep) {
@@ -103,7 +107,13 @@ mod tests {
 
     #[test]
     fn the_tree_costs_what_the_choices_promise() {
-        let costs = Costs { node: 1.5, block: [1.0, 2.0, 4.0], room: [4.0, 4.0, 2.0], largest_leaf: 6 };
+        let costs = Costs {
+            node: 1.5,
+            block: [1.0, 2.0, 4.0],
+            room: [4.0, 4.0, 2.0],
+            largest_leaf: 6,
+            stays_whole: [false, true, false],
+        };
         let kinds = [Kind::Sphere, Kind::Triangle, Kind::Triangle, Kind::Polygon];
         let items = (0..500_u16).zip(kinds.into_iter().cycle()).map(|(index, kind)| {
             let low = Vec3::new(f32::from(index % 7), f32::from(index % 11), f32::from(index % 13));

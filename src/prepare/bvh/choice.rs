@@ -31,6 +31,9 @@ pub(super) struct Choices(u32);
 
 impl Choices {
     pub(super) const NONE: Self = Self(0);
+    /// One child, a leaf, and nothing else.
+    pub(super) const LEAF: Self = Self(1 << Self::LEAF_BIT);
+    const LEAF_BIT: u32 = 28;
 
     /// Of 2 to 8 children, how many go to the left half; 0 if one child fewer is as cheap.
     pub(super) fn left_of(self, children: usize) -> usize {
@@ -43,12 +46,12 @@ impl Choices {
     }
 
     fn set_leaf(&mut self) {
-        self.0 |= 1 << 28;
+        self.0 |= 1 << Self::LEAF_BIT;
     }
 
     /// Whether one child is a leaf and not a node.
     pub(super) fn is_leaf(self) -> bool {
-        self.0 >> 28 != 0
+        self.0 >> Self::LEAF_BIT != 0
     }
 }
 

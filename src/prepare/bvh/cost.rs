@@ -16,6 +16,8 @@ pub(crate) struct Costs {
     pub room: [f32; Kind::COUNT],
     /// Most primitives in a leaf; at least 1.
     pub largest_leaf: u32,
+    /// Of which kinds a group that may be a leaf is one, without asking what its parts would cost.
+    pub stays_whole: [bool; Kind::COUNT],
 }
 
 impl Costs {

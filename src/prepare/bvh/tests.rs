@@ -5,7 +5,8 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 const KINDS: [Kind; 3] = [Kind::Sphere, Kind::Triangle, Kind::Polygon];
-const COSTS: Costs = Costs { node: 1.0, block: [1.0; 3], room: [4.0, 4.0, 1.0], largest_leaf: 4 };
+const COSTS: Costs =
+    Costs { node: 1.0, block: [1.0; 3], room: [4.0, 4.0, 1.0], largest_leaf: 4, stays_whole: [false; 3] };
 
 fn triangle(low: Vec3, high: Vec3) -> Item {
     Item { bounds: Bounds { low, high }, kind: Kind::Triangle, weight: 1 }
@@ -57,7 +58,8 @@ impl Walk<'_> {
         self.nodes += 1;
         let node = &self.tree.nodes[index as usize];
         let used = node.children.iter().filter(|&&child| child != Child::EMPTY).count();
-        assert!(used >= 2 || self.items.len() == 1, "{used} children");
+        let leaves: usize = self.tree.leaves.iter().map(Vec::len).sum();
+        assert!(used >= 2 || leaves == 1, "{used} children");
         let (mut all, mut depth) = (Bounds::EMPTY, 0);
         for (slot, child) in node.children.iter().enumerate() {
             let (bounds, below) = match child.unpack() {
@@ -140,6 +142,7 @@ proptest! {
         items in prop::collection::vec(item(), 0..300),
         exponent in -140..60_i32,
         largest_leaf in 1..9_u32,
+        stays_whole in prop::array::uniform3(any::<bool>()),
     ) {
         // In two steps, of which each is a normal number.
         let (half, rest) = (exponent / 2, exponent - exponent / 2);
@@ -151,7 +154,7 @@ proptest! {
                 ..item
             })
             .collect();
-        check(&items, &Costs { largest_leaf, ..COSTS });
+        check(&items, &Costs { largest_leaf, stays_whole, ..COSTS });
     }
 }
 
@@ -280,6 +283,21 @@ fn a_tree_costs_clearly_less_than_halving_by_count() {
     halved(&mut (0..).zip(items.iter().copied()).collect::<Vec<_>>(), &mut tree);
     let of_halving = sah_cost(&tree, &items, &COSTS);
     assert!(cost < 0.8 * of_halving, "{cost} against {of_halving}");
+}
+
+#[test]
+fn of_kinds_that_stay_whole_leaves_are_not_parted() {
+    // Far apart, so that each by itself would cost less.
+    let apart = |count: u8| -> Vec<Item> {
+        let low = |index: u8| Vec3::splat(100.0 * f32::from(index));
+        (0..count).map(|index| triangle(low(index), low(index) + 1.0)).collect()
+    };
+    let leaves = |count: u8, stays_whole| check(&apart(count), &Costs { stays_whole, ..COSTS }).leaves;
+    let is_triangle = [Kind::Sphere, Kind::Triangle, Kind::Polygon].map(|kind| kind == Kind::Triangle);
+    assert_eq!(leaves(4, [false; 3])[Kind::Triangle as usize].len(), 4);
+    assert_eq!(leaves(4, is_triangle.map(|is| !is))[Kind::Triangle as usize].len(), 4);
+    assert_eq!(leaves(4, is_triangle)[Kind::Triangle as usize].len(), 1);
+    assert_eq!(leaves(5, is_triangle)[Kind::Triangle as usize].len(), 2);
 }
 
 #[test]

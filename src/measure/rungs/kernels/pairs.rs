@@ -401,12 +401,12 @@ mod tests {
         let rows = vec![[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0, f32::INFINITY]];
         let pairs =
             |starts| collected(geometry.clone(), &RaySet { rows: rows.clone(), starts, found: vec![] }, 10);
-        // The scene's scale is ¼. The one ends at the far side of the first sphere, the other at the second.
+        // The scene's scale is ¼. Both spheres are in one leaf.
         let centers = |starts| {
             let sample = pairs(starts);
             (0..sample.columns.pairs()).map(|row| sample.columns.row(row)[10]).collect::<Vec<_>>()
         };
-        assert_eq!(centers(vec![]), [0.0]);
+        assert_eq!(centers(vec![]), [0.0, -0.75]);
         assert_eq!(centers(start(0)), [-0.75]);
     }
 }
