@@ -223,9 +223,14 @@ impl Stream {
         for place in (0..count).step_by(L::WIDTH) {
             let numbers = &self.lists[first + place..];
             let rays = self.rays.boxes::<L>(numbers);
-            let met = child::meet(&rays.slabs, (node, slot), self.rays.class.backwards, rays.end);
-            let mask = met & L::first(count - place);
-            counts.boxes.add(L::WIDTH, L::WIDTH.min(count - place));
+            let still = if ANY {
+                // What is any hit's end is either where it was or nowhere.
+                rays.end.ge(L::splat(0.0))
+            } else {
+                counts.boxes.add(L::WIDTH, L::WIDTH.min(count - place));
+                child::meet(&rays.slabs, (node, slot), self.rays.class.backwards, rays.end)
+            };
+            let mask = still & L::first(count - place);
             if mask.any() {
                 let used = mask.bits().count_ones() as usize;
                 let mut rays = Listed::new(&mut self.rays, numbers, rays);
