@@ -126,6 +126,8 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
     /// Stores the ids of the lanes whose bits are set, one after the other from the start, and anything behind them, of a
     /// slice that has room for all.
     fn pack_ids(ids: Self::Ids, bits: u32, to: &mut [u32]);
+    /// The mask of the lanes whose bits are set.
+    fn of_bits(bits: u32) -> Self::Mask;
     /// A mask's halves, of lanes that are half as many: what they choose may be less work in such. None where a node's are no
     /// fewer than these.
     fn halves(mask: Self::Mask) -> Option<[<Self::Node as Lanes>::Mask; 2]>;

@@ -126,6 +126,11 @@ impl Single for f32 {
     }
 
     #[inline(always)]
+    fn of_bits(bits: u32) -> bool {
+        bits & 1 == 1
+    }
+
+    #[inline(always)]
     fn halves(_: bool) -> Option<[bool; 2]> {
         None
     }

@@ -294,6 +294,8 @@ impl Job for Ids<'_> {
         assert_row("ids_eq", width, &found, |lane| u32::from(word[lane] == other[lane]));
         let found = mask_over_row(width, |first| F::ids_odd(load(word, first)).bits());
         assert_row("ids_odd", width, &found, |lane| word[lane] % 2);
+        let found = mask_over_row(width, |first| F::of_bits(word[0] >> first).bits());
+        assert_row("of_bits", width, &found, |lane| word[0] >> lane & 1);
         let found = over_row(width, |first, to| F::store_ids(F::ids_half(load(word, first)), to));
         assert_row("ids_half", width, &found, |lane| word[lane] / 2);
         let found = over_row(width, |first, to| F::store_ids(F::splat_ids(word[first]), to));

@@ -9,6 +9,17 @@ use wide::{f32x4, f32x8, f32x16, f64x2, f64x4, f64x8, i32x4, i32x8, i32x16, u64x
 /// A lane's number in its place, for masks of the first lanes.
 const COUNTING: [f32; 16] = [0., 1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 12., 13., 14., 15.];
 
+/// A lane's bit in a number.
+const BITS: [u32; 16] = {
+    let mut bits = [1; 16];
+    let mut lane = 1;
+    while lane < 16 {
+        bits[lane] = bits[lane - 1] << 1;
+        lane += 1;
+    }
+    bits
+};
+
 macro_rules! many_lanes {
     ($lanes:ty, $scalar:ty, $width:literal) => {
         impl Mask for $lanes {
@@ -159,6 +170,12 @@ macro_rules! many_singles {
             #[inline(always)]
             fn pack_ids(ids: $ids, bits: u32, to: &mut [u32]) {
                 Packed::pack(ids, bits, to);
+            }
+
+            #[inline(always)]
+            fn of_bits(bits: u32) -> Self {
+                let lanes = Self::load_ids(&BITS);
+                bytemuck::cast((Self::splat_ids(bits) & lanes).simd_eq(lanes))
             }
 
             #[inline(always)]

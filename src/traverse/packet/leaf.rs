@@ -5,6 +5,7 @@ use super::super::exact::{self, Nearest, Spot};
 use super::super::leaf::{self, RayLanes};
 use super::super::sight::{SeenBounds, Sight};
 use super::super::{Counts, DEAD};
+use super::picked::{self, Rows};
 use super::{Columns, PACKET, Packet};
 use crate::kernel::RaySpace;
 use crate::kernel::sphere::Line;
@@ -33,34 +34,89 @@ impl Packet {
             return;
         }
         let leaf = (leaf, in_sight);
+        if ANY && matches!(leaf.0, Place::Triangles(_)) {
+            let rows = self.entering::<F>((node, slot), (first_group, mask), counts);
+            self.visit_rows::<F, DEPARTING, ANY>(hierarchy, leaf, rows, counts);
+            return;
+        }
         let mut group = first_group;
         let mut mask = mask;
         loop {
-            let bits = mask.bits();
-            if bits != 0 {
-                let used = bits.count_ones() as usize;
-                let upper = bits.trailing_zeros() as usize / F::Node::WIDTH;
-                let is_in_half = bits >> (upper * F::Node::WIDTH) >> F::Node::WIDTH == 0;
-                let row = group as usize * F::WIDTH;
-                match F::halves(mask) {
-                    // Rays of a packet lie in an order, so those that meet a leaf often lie side by side.
-                    Some(halves) if is_in_half => {
-                        let mut rays = Group { packet: self, row: row + upper * F::Node::WIDTH };
-                        let mask = (halves[upper], used);
-                        leaf::visit::<F::Node, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, mask, counts);
-                    }
-                    _ => {
-                        let mut rays = Group { packet: self, row };
-                        leaf::visit::<F, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
-                    }
-                }
-            }
+            let row = group as usize * F::WIDTH;
+            self.visit_group::<F, DEPARTING, ANY>(hierarchy, leaf, (row, mask), counts);
             group += 1;
             if group as usize * F::WIDTH >= PACKET {
                 return;
             }
             mask = self.group_enters::<F>(node, slot, group, counts);
         }
+    }
+
+    /// Tests what is in a leaf against the rays of some rows, side by side if that is less work. Closest hits are so many that
+    /// to give them back to rows one by one cost more than it saved: primary rays at 0.95 to 1.00 of the speed, 2026-11.
+    #[inline(always)]
+    fn visit_rows<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        leaf: (Place, u32),
+        rows: Rows,
+        counts: &mut Counts,
+    ) {
+        if picked::pays::<F>(rows) {
+            self.visit_picked::<F, DEPARTING, ANY>(hierarchy, leaf, rows, counts);
+            return;
+        }
+        for row in (0..PACKET).step_by(F::WIDTH) {
+            let mask = F::of_bits(picked::of_group::<F>(rows, row));
+            self.visit_group::<F, DEPARTING, ANY>(hierarchy, leaf, (row, mask), counts);
+        }
+    }
+
+    /// Tests what is in a leaf against the rays of a group that a mask says, if any.
+    #[inline(always)]
+    fn visit_group<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        leaf: (Place, u32),
+        (row, mask): (usize, F::Mask),
+        counts: &mut Counts,
+    ) {
+        let bits = mask.bits();
+        if bits == 0 {
+            return;
+        }
+        let used = bits.count_ones() as usize;
+        let upper = bits.trailing_zeros() as usize / F::Node::WIDTH;
+        let is_in_half = bits >> (upper * F::Node::WIDTH) >> F::Node::WIDTH == 0;
+        match F::halves(mask) {
+            // Rays of a packet lie in an order, so those that meet a leaf often lie side by side.
+            Some(halves) if is_in_half => {
+                let mut rays = Group { packet: self, row: row + upper * F::Node::WIDTH };
+                let mask = (halves[upper], used);
+                leaf::visit::<F::Node, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, mask, counts);
+            }
+            _ => {
+                let mut rays = Group { packet: self, row };
+                leaf::visit::<F, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (mask, used), counts);
+            }
+        }
+    }
+
+    /// The rows whose rays meet the box of a child, of which no group before the given one has any.
+    #[inline(always)]
+    fn entering<F: Single>(
+        &self,
+        (node, slot): (&Node, u8),
+        (first_group, mask): (u8, F::Mask),
+        counts: &mut Counts,
+    ) -> Rows {
+        let mut rows = Rows::from(mask.bits()) << (first_group as usize * F::WIDTH);
+        #[expect(clippy::cast_possible_truncation, reason = "at most 64 groups")]
+        for group in first_group + 1..(PACKET / F::WIDTH) as u8 {
+            let bits = self.group_enters::<F>(node, slot, group, counts).bits();
+            rows |= Rows::from(bits) << (group as usize * F::WIDTH);
+        }
+        rows
     }
 
     /// The triangles of a block that some ray may meet, a bit each: all but those with all corners on one side of all feet, or
@@ -144,7 +200,7 @@ impl Packet {
         }
     }
 
-    fn exact(&self, row: usize) -> exact::Line {
+    pub(super) fn exact(&self, row: usize) -> exact::Line {
         let vectors = [&self.origin, &self.origin_low, &self.direction]
             .map(|columns| columns.each_ref().map(|column| column[row]));
         exact::Line::new(vectors, self.departure[row], self.t_min[row])
@@ -152,7 +208,7 @@ impl Packet {
 
     /// Takes in what a ray meets of a primitive for which f32 cannot tell.
     #[cold]
-    fn offer_exact<const DEPARTING: bool, const ANY: bool>(
+    pub(super) fn offer_exact<const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
         row: usize,

@@ -1,13 +1,15 @@
 //! Rays that walk together: at a node, its eight children are tested against bounds of all rays at once; the first group of
 //! lanes with a ray that meets a child's box takes the packet into it; at a leaf, the lanes are rays.
 //!
-//! This file gathers rays and walks; `leaf` tests what is in a leaf and keeps the nearest hits.
+//! This file gathers rays and walks; `leaf` tests what is in a leaf and keeps the nearest hits; `picked` does so for few rays of
+//! many, moved side by side.
 //!
 //! Sources: Wald, Boulos and Shirley, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies", 2007 (the
 //! first active ray); Boulos, Wald and Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets", 2006
 //! (interval arithmetic).
 
 mod leaf;
+mod picked;
 
 use super::coherence::{WIDEST_SLOPES, common_order};
 use super::exact::Spot;
@@ -17,6 +19,7 @@ use crate::kernel::bounds::{LEAST_COMPONENT, PADDING, Slabs};
 use crate::lanes::{Lanes, Mask, RECORD, Single, Vector, least_of_each};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
+use picked::Picked;
 
 /// Rays of a packet.
 pub(super) const PACKET: usize = 64;
@@ -59,6 +62,7 @@ pub(super) struct Packet {
     /// What all of them see, if they start at one point and not on a primitive.
     sight: Option<Sight>,
     count: usize,
+    picked: Picked,
     /// Whether a hit was taken in since the hull was made.
     is_changed: bool,
 }
@@ -116,6 +120,7 @@ impl Packet {
             hull: Hull::default(),
             sight: None,
             count: 0,
+            picked: Picked::NONE,
             is_changed: false,
         }
     }
