@@ -17,7 +17,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     query: QueryName,
     #[command(flatten)]
     engine: EngineArguments,
-    /// Timed passes over all rays; one more goes before them
+    /// Timed passes over all rays; before them go others, for a tenth of a second and one at least
     #[arg(long, value_name = "K", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     repeat: u32,
     /// Write what is hit to PREFIX.t.npy (+inf on a miss) and PREFIX.prim.npy (4294967295 on a miss)
@@ -183,10 +183,18 @@ fn traced(arguments: &Arguments, scene: &Scene, rays: &RaySet) -> Result<Traced,
     Ok(traced)
 }
 
-/// Seconds of passes, after one that is not counted.
+/// Passes that are not timed go on for so long. Threads that have only just begun may share a core for some tens of
+/// milliseconds, in which others have done three passes.
+const WARM_UP: Duration = Duration::from_millis(100);
+
+/// Seconds of passes, after some that are not counted.
 fn timed(arguments: &Arguments, mut pass: impl FnMut() -> f64) -> Vec<f64> {
     let progress = Progress::new(arguments.progress, u64::from(arguments.repeat) + 1, "passes");
+    let start = Instant::now();
     pass();
+    while start.elapsed() < WARM_UP {
+        pass();
+    }
     progress.report(1);
     let seconds = (1..=u64::from(arguments.repeat)).map(|done| {
         let seconds = pass();
