@@ -4,7 +4,7 @@ use super::measuring::MeasuringArguments;
 use super::progress::Progress;
 use super::{Failure, interrupt, output};
 use crate::generate::{StandardScene, generate};
-use crate::load;
+use crate::load::{self, Loaded};
 use crate::measure::Machine;
 use crate::measure::bench::{Baseline, BenchOptions, BenchReport, Growth, SceneBench};
 use crate::render::RenderError;
@@ -53,6 +53,9 @@ fn percent(word: &str) -> Result<f64, String> {
 const STANDARD_SIDE: u32 = 512;
 /// Of the standard set, cost over all but primitives is measured on this scene, at its largest size up to a limit.
 const GROWN: (StandardScene, u32) = (StandardScene::Terrain, 100_000);
+
+/// Primitives of a TOML file. To read one takes about 5 KB for each, so ten times as many would take 50 GB.
+const LARGEST_TOML: u32 = 1_000_000;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let inputs = arguments.scenes.iter().chain(&arguments.baseline);
@@ -156,35 +159,49 @@ impl Work {
         }
     }
 
-    /// The scene and the seconds to load it. Those of the standard set are written first, as NFF where that can say them.
-    fn load(&self, arguments: &Arguments, scratch: &Path) -> Result<(Scene, f64), Failure> {
-        let path = match self {
-            Self::File(path) => path.clone(),
+    /// The scene and the seconds to load it; none where there is no file that it could be read from.
+    fn load(&self, arguments: &Arguments, scratch: &Path) -> Result<(Scene, Option<f64>), Failure> {
+        let (mut scene, seconds) = match self {
+            Self::File(path) => {
+                let (loaded, seconds) = timed(path)?;
+                loaded.warnings.iter().for_each(output::diagnostic);
+                (loaded.scene, Some(seconds))
+            }
             Self::Standard(which, size) => {
-                let scene = generate(*which, *size as usize)?;
-                let nff = scratch.join("scene.nff");
-                match save::save(&scene, &nff) {
-                    Err(SaveError::CannotSay { .. }) => {
-                        let toml = scratch.join("scene.toml");
-                        save::save(&scene, &toml)?;
-                        toml
-                    }
-                    saved => saved.map(|()| nff)?,
+                let mut scene = generate(*which, *size as usize)?;
+                let mut seconds = None;
+                if let Some(path) = saved(&scene, *size, scratch)? {
+                    let (loaded, loading) = timed(&path)?;
+                    (scene, seconds) = (loaded.scene, Some(loading));
                 }
+                (scene.image.width, scene.image.height) = (STANDARD_SIDE, STANDARD_SIDE);
+                (scene, seconds)
             }
         };
-        let start = Instant::now();
-        let loaded = load::load(&path)?;
-        let seconds = start.elapsed().as_secs_f64();
-        let mut scene = loaded.scene;
-        if matches!(self, Self::Standard(..)) {
-            (scene.image.width, scene.image.height) = (STANDARD_SIDE, STANDARD_SIDE);
-        } else {
-            loaded.warnings.iter().for_each(output::diagnostic);
-        }
         arguments.measuring.settings.apply(&mut scene);
         Ok((scene, seconds))
     }
+}
+
+/// A file of a scene of the standard set: NFF where that can say it, else TOML unless it is too large for that.
+fn saved(scene: &Scene, size: u32, scratch: &Path) -> Result<Option<PathBuf>, Failure> {
+    let nff = scratch.join("scene.nff");
+    match save::save(scene, &nff) {
+        Err(SaveError::CannotSay { .. }) if size > LARGEST_TOML => Ok(None),
+        Err(SaveError::CannotSay { .. }) => {
+            let toml = scratch.join("scene.toml");
+            save::save(scene, &toml)?;
+            Ok(Some(toml))
+        }
+        saved => Ok(saved.map(|()| Some(nff))?),
+    }
+}
+
+/// A file read, and the seconds that took.
+fn timed(path: &Path) -> Result<(Loaded, f64), Failure> {
+    let start = Instant::now();
+    let loaded = load::load(path)?;
+    Ok((loaded, start.elapsed().as_secs_f64()))
 }
 
 fn measured(

@@ -88,7 +88,7 @@ fn phases(report: &BenchReport) -> String {
         table.push(vec![
             scene.scene.clone(),
             scene.primitives.to_string(),
-            number(load),
+            maybe(load),
             maybe(median(build)),
             maybe(trace),
             maybe(shade),

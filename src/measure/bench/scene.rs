@@ -65,8 +65,8 @@ pub struct SceneBench {
 /// Wall-clock seconds by phase.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PhaseSeconds {
-    /// Reading and checking the file; once.
-    pub load: f64,
+    /// Reading and checking the file, once; none where there is none.
+    pub load: Option<f64>,
     /// Making the scene ready.
     pub build: Option<Spread>,
     /// The part of a frame in which rays are intersected.
@@ -116,14 +116,14 @@ impl SceneBench {
         passes + RayKind::ALL.len() as u64 * (passes + 1)
     }
 
-    /// Measures a scene that took some seconds to load.
+    /// Measures a scene that took some seconds to load, if it was loaded.
     ///
     /// # Errors
     /// What keeps the wavefront engine from rendering it.
     pub fn measure(
         name: &str,
         scene: &Scene,
-        load_seconds: f64,
+        load_seconds: Option<f64>,
         options: &BenchOptions<'_>,
     ) -> Result<Self, RenderError> {
         let race = Race {
@@ -182,7 +182,7 @@ impl SceneBench {
 }
 
 impl PhaseSeconds {
-    fn of(all: &[Frames], simd: &Frames, load: f64, options: &BenchOptions<'_>) -> Self {
+    fn of(all: &[Frames], simd: &Frames, load: Option<f64>, options: &BenchOptions<'_>) -> Self {
         let build = all.iter().flat_map(|frames| frames.prepare_seconds.iter().copied()).collect();
         let stages = simd.last.wavefront.as_ref().map(|report| &report.stage_seconds);
         let traced = stages.and_then(|seconds| {
