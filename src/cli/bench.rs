@@ -267,3 +267,21 @@ fn hold_against(arguments: &Arguments, baseline: &Baseline, report: &BenchReport
         ))),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_go_through_a_file_unless_only_toml_says_them_and_they_are_large() {
+        let scratch = tempfile::tempdir().unwrap();
+        let file = |which, size| {
+            let scene = generate(which, 100).unwrap();
+            let path = saved(&scene, size, scratch.path()).unwrap();
+            path.map(|path| path.file_name().unwrap().to_owned())
+        };
+        assert_eq!(file(StandardScene::Sphereflake, LARGEST_TOML + 1), Some("scene.nff".into()));
+        assert_eq!(file(StandardScene::Terrain, LARGEST_TOML), Some("scene.toml".into()));
+        assert_eq!(file(StandardScene::Terrain, LARGEST_TOML + 1), None);
+    }
+}
