@@ -148,9 +148,10 @@ fn meet_triangles<F: Single>(rays: &Rays, triangles: &[[[f32; 3]; 3]], nearest: 
         for row in groups::<F>() {
             let space = rays.space::<F>(row);
             let meeting = triangle::meet(&space, vertices);
-            if meeting.inside(zero).any() {
+            let inside = meeting.inside(zero);
+            if inside.any() {
                 let t = meeting.t(&space);
-                pairs += keep(t, meeting.inside(zero) & t.gt(zero), &mut nearest[row..]);
+                pairs += keep(t, inside & t.gt(zero), &mut nearest[row..]);
             }
         }
     }

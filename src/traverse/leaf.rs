@@ -13,13 +13,9 @@ use crate::prepare::{BLOCK, Hierarchy, Place};
 
 /// A ray in each lane, and what it has found so far.
 pub(super) trait RayLanes<F: Single> {
-    /// Whether the rays go nearly the same way from nearly the same place.
-    const ARE_ALIKE: bool;
-
     /// Order of axes in ray space, the same for all.
     fn axes(&self) -> [usize; 3];
     fn space<const DEPARTING: bool>(&self) -> RaySpace<F>;
-    fn line<const DEPARTING: bool>(&self) -> Line<F>;
     /// How far a surface may seem to be from where it is.
     fn padding(&self) -> F;
     /// Not asked of rays that start on primitives.
@@ -35,6 +31,14 @@ pub(super) trait RayLanes<F: Single> {
         mask: F::Mask,
         at: (Spot, u32),
     );
+}
+
+/// The same for spheres and polygons too, which ask for more.
+pub(super) trait RayLines<F: Single>: RayLanes<F> {
+    /// Whether the rays go nearly the same way from nearly the same place.
+    const ARE_ALIKE: bool;
+
+    fn line<const DEPARTING: bool>(&self) -> Line<F>;
 }
 
 /// Where rays start.
@@ -67,7 +71,7 @@ impl<F: Single> Starts<F> {
 
 /// Tests what is in a leaf against the lanes of a mask, `used` of them. Of triangles those whose bits are set in `in_sight`.
 #[inline(always)]
-pub(super) fn visit<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+pub(super) fn visit<F: Single, R: RayLines<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     (leaf, in_sight): (Place, u32),
     rays: &mut R,
@@ -97,8 +101,9 @@ fn asked<const ANY: bool>(hierarchy: &Hierarchy, ids: &[u32; BLOCK]) -> impl Ite
     there.filter(move |&(_, id)| !ANY || hierarchy.casts_shadow(id))
 }
 
+/// Tests triangles of a block, those whose bits are set in `in_sight`.
 #[inline(always)]
-fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+pub(super) fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     (index, in_sight): (usize, u32),
     rays: &mut R,
@@ -127,7 +132,7 @@ fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
 }
 
 #[inline(always)]
-fn spheres<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+fn spheres<F: Single, R: RayLines<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     index: usize,
     rays: &mut R,
@@ -152,7 +157,7 @@ fn spheres<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
 }
 
 #[inline(always)]
-fn polygon<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+fn polygon<F: Single, R: RayLines<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     index: usize,
     rays: &mut R,

@@ -2,7 +2,7 @@
 
 use super::super::candidate::Candidate;
 use super::super::exact::{self, Nearest, Spot};
-use super::super::leaf::{self, RayLanes};
+use super::super::leaf::{self, RayLanes, RayLines};
 use super::super::sight::{SeenBounds, Sight};
 use super::super::{Counts, DEAD};
 use super::picked::{self, Rows};
@@ -33,12 +33,12 @@ impl Packet {
         if in_sight == 0 {
             return;
         }
-        let leaf = (leaf, in_sight);
-        if ANY && matches!(leaf.0, Place::Triangles(_)) {
+        if let (true, Place::Triangles(index)) = (ANY, leaf) {
             let rows = self.entering::<F>((node, slot), (first_group, mask), counts);
-            self.visit_rows::<F, DEPARTING, ANY>(hierarchy, leaf, rows, counts);
+            self.visit_rows::<F, DEPARTING>(hierarchy, (index, in_sight), rows, counts);
             return;
         }
+        let leaf = (leaf, in_sight);
         let mut group = first_group;
         let mut mask = mask;
         loop {
@@ -52,23 +52,25 @@ impl Packet {
         }
     }
 
-    /// Tests what is in a leaf against the rays of some rows, side by side if that is less work. Closest hits are so many that
-    /// to give them back to rows one by one cost more than it saved: primary rays at 0.95 to 1.00 of the speed, 2026-11.
+    /// Tests the triangles of a leaf, those that are in sight, against the shadow rays of some rows: side by side if that is
+    /// less work. Closest hits are so many that to give them back to rows one by one cost more than it saved: primary rays at
+    /// 0.95 to 1.00 of the speed, 2026-11.
     #[inline(always)]
-    fn visit_rows<F: Single, const DEPARTING: bool, const ANY: bool>(
+    fn visit_rows<F: Single, const DEPARTING: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        leaf: (Place, u32),
+        (index, in_sight): (usize, u32),
         rows: Rows,
         counts: &mut Counts,
     ) {
         if picked::pays::<F>(rows) {
-            self.visit_picked::<F, DEPARTING, ANY>(hierarchy, leaf, rows, counts);
+            self.visit_picked::<F, DEPARTING>(hierarchy, (index, in_sight), rows, counts);
             return;
         }
+        let leaf = (Place::Triangles(index), in_sight);
         for row in (0..PACKET).step_by(F::WIDTH) {
             let mask = F::of_bits(picked::of_group::<F>(rows, row));
-            self.visit_group::<F, DEPARTING, ANY>(hierarchy, leaf, (row, mask), counts);
+            self.visit_group::<F, DEPARTING, true>(hierarchy, leaf, (row, mask), counts);
         }
     }
 
@@ -200,7 +202,7 @@ impl Packet {
         }
     }
 
-    pub(super) fn exact(&self, row: usize) -> exact::Line {
+    fn exact(&self, row: usize) -> exact::Line {
         let vectors = [&self.origin, &self.origin_low, &self.direction]
             .map(|columns| columns.each_ref().map(|column| column[row]));
         exact::Line::new(vectors, self.departure[row], self.t_min[row])
@@ -220,9 +222,22 @@ impl Packet {
         let line = self.exact(row);
         let found =
             if DEPARTING { line.departs_to(hierarchy, spot) } else { line.meets_beyond(hierarchy, spot) };
-        let Some(t) = found else { return };
-        let error = t * exact::ROUNDED;
-        if !self.decide::<ANY>(hierarchy, row, (t, error, spot)) {
+        if let Some(t) = found {
+            self.offer_one::<ANY>(hierarchy, row, (t, t * exact::ROUNDED), (spot, spot.id(hierarchy)));
+        }
+    }
+
+    /// Takes a hit in if it is nearer, or if any will do.
+    #[inline(always)]
+    pub(super) fn offer_one<const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        row: usize,
+        (t, error): (f32, f32),
+        (spot, id): (Spot, u32),
+    ) {
+        let is_done = ANY && self.t[row] < 0.0;
+        if is_done || !self.yields::<ANY>(hierarchy, row, (t, error, spot)) {
             return;
         }
         self.is_changed = true;
@@ -230,15 +245,21 @@ impl Packet {
             (self.t[row], self.end[row]) = (DEAD, DEAD);
         } else {
             (self.t[row], self.error[row], self.end[row]) = (t, error, t + error);
-            (self.spot[row], self.id[row]) = (spot.0, spot.id(hierarchy));
+            (self.spot[row], self.id[row]) = (spot.0, id);
         }
+    }
+
+    /// Whether what a ray has found gives way to a hit.
+    #[inline(always)]
+    fn yields<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, found: (f32, f32, Spot)) -> bool {
+        let nearest = Nearest { t: self.t[row], error: self.error[row], spot: Spot(self.spot[row]) };
+        nearest.yields_to::<ANY>(hierarchy, || self.exact(row), found)
     }
 
     /// Decides for one ray, in f64 where it takes that.
     #[cold]
     fn decide<const ANY: bool>(&self, hierarchy: &Hierarchy, row: usize, found: (f32, f32, Spot)) -> bool {
-        let nearest = Nearest { t: self.t[row], error: self.error[row], spot: Spot(self.spot[row]) };
-        nearest.yields_to::<ANY>(hierarchy, || self.exact(row), found)
+        self.yields::<ANY>(hierarchy, row, found)
     }
 
     #[inline(always)]
@@ -273,9 +294,23 @@ struct Group<'a> {
     row: usize,
 }
 
-impl<F: Single> RayLanes<F> for Group<'_> {
+impl<F: Single> RayLines<F> for Group<'_> {
     const ARE_ALIKE: bool = true;
 
+    #[inline(always)]
+    fn line<const DEPARTING: bool>(&self) -> Line<F> {
+        let Self { packet, row } = self;
+        Line {
+            origin: packet.origin.map_lanes(*row),
+            origin_low: DEPARTING.then(|| packet.origin_low.map_lanes(*row)),
+            direction: packet.direction.map_lanes(*row),
+            a: F::load(&packet.a[*row..]),
+            inverse_a: F::load(&packet.inverse_a[*row..]),
+        }
+    }
+}
+
+impl<F: Single> RayLanes<F> for Group<'_> {
     #[inline(always)]
     fn axes(&self) -> [usize; 3] {
         self.packet.axes
@@ -289,18 +324,6 @@ impl<F: Single> RayLanes<F> for Group<'_> {
             origin_low: DEPARTING.then(|| packet.axes.map(|axis| F::load(&packet.origin_low[axis][*row..]))),
             shear: [F::load(&packet.shear[0][*row..]), F::load(&packet.shear[1][*row..])],
             t_per_z: F::load(&packet.t_per_z[*row..]),
-        }
-    }
-
-    #[inline(always)]
-    fn line<const DEPARTING: bool>(&self) -> Line<F> {
-        let Self { packet, row } = self;
-        Line {
-            origin: packet.origin.map_lanes(*row),
-            origin_low: DEPARTING.then(|| packet.origin_low.map_lanes(*row)),
-            direction: packet.direction.map_lanes(*row),
-            a: F::load(&packet.a[*row..]),
-            inverse_a: F::load(&packet.inverse_a[*row..]),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Those rays of a packet that meet a leaf, moved side by side.
+//! Those shadow rays of a packet that meet a leaf of triangles, moved side by side.
 //!
 //! Of the rays of a group a few meet a leaf, and each triangle in it would be tested with all others in lanes of no use: shadow
 //! rays of the bunny left 6 of 14 empty. To move what the test needs of a ray is a handful of operations a group, once for all
@@ -7,13 +7,12 @@
 
 use super::super::Counts;
 use super::super::candidate::Candidate;
-use super::super::exact::{self, Spot};
+use super::super::exact::Spot;
 use super::super::leaf::{self, RayLanes};
-use super::{Column, DEAD, PACKET, Packet};
+use super::{Column, PACKET, Packet};
 use crate::kernel::RaySpace;
-use crate::kernel::sphere::Line;
-use crate::lanes::{Lanes, Mask, Single, Vector};
-use crate::prepare::{Hierarchy, Place};
+use crate::lanes::{Lanes, Mask, Single};
+use crate::prepare::Hierarchy;
 
 /// Lanes may be stored, and loaded, so far beyond the last ray.
 const BEYOND: usize = 16;
@@ -78,12 +77,12 @@ pub(super) fn of_group<F: Single>(rows: Rows, first: usize) -> u32 {
 }
 
 impl Packet {
-    /// Tests the triangles of a leaf against the rays of some rows.
+    /// Tests the triangles of a leaf, those that are in sight, against the shadow rays of some rows.
     #[inline(always)]
-    pub(super) fn visit_picked<F: Single, const DEPARTING: bool, const ANY: bool>(
+    pub(super) fn visit_picked<F: Single, const DEPARTING: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        leaf: (Place, u32),
+        triangles: (usize, u32),
         rows: Rows,
         counts: &mut Counts,
     ) {
@@ -91,25 +90,26 @@ impl Packet {
         let count = rows.count_ones() as usize;
         let mut first = 0;
         while first + F::Node::WIDTH < count {
-            self.visit_lanes::<F, DEPARTING, ANY>(hierarchy, leaf, (first, count), counts);
+            self.visit_lanes::<F, DEPARTING>(hierarchy, triangles, (first, count), counts);
             first += F::WIDTH;
         }
         if first < count {
-            self.visit_lanes::<F::Node, DEPARTING, ANY>(hierarchy, leaf, (first, count), counts);
+            self.visit_lanes::<F::Node, DEPARTING>(hierarchy, triangles, (first, count), counts);
         }
     }
 
     #[inline(always)]
-    fn visit_lanes<L: Single, const DEPARTING: bool, const ANY: bool>(
+    fn visit_lanes<L: Single, const DEPARTING: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        leaf: (Place, u32),
+        triangles: (usize, u32),
         (first, count): (usize, usize),
         counts: &mut Counts,
     ) {
         let used = (count - first).min(L::WIDTH);
         let mut rays = PickedLanes { packet: self, first };
-        leaf::visit::<L, _, DEPARTING, ANY>(hierarchy, leaf, &mut rays, (L::first(used), used), counts);
+        let lanes = (L::first(used), used);
+        leaf::triangles::<L, _, DEPARTING, true>(hierarchy, triangles, &mut rays, lanes, counts);
     }
 
     /// Moves what the tests need of the rays of some rows side by side.
@@ -169,21 +169,9 @@ impl PickedLanes<'_> {
     fn load_three<L: Single>(&self, [x, y, z]: &[[f32; ROOM]; 3]) -> [L; 3] {
         [self.load(x), self.load(y), self.load(z)]
     }
-
-    /// What was not moved.
-    #[inline(always)]
-    fn gathered<L: Single>(&self, column: &Column) -> L {
-        let mut lanes = [0.0; 16];
-        for (lane, number) in lanes[..L::WIDTH].iter_mut().enumerate() {
-            *number = column[self.row(lane)];
-        }
-        L::load(&lanes)
-    }
 }
 
 impl<L: Single> RayLanes<L> for PickedLanes<'_> {
-    const ARE_ALIKE: bool = true;
-
     #[inline(always)]
     fn axes(&self) -> [usize; 3] {
         self.packet.axes
@@ -197,20 +185,6 @@ impl<L: Single> RayLanes<L> for PickedLanes<'_> {
             origin_low: DEPARTING.then(|| self.load_three(&picked.origin_low)),
             shear: [self.load(&picked.shear[0]), self.load(&picked.shear[1])],
             t_per_z: self.load(&picked.t_per_z),
-        }
-    }
-
-    #[inline(always)]
-    fn line<const DEPARTING: bool>(&self) -> Line<L> {
-        let vector = |[x, y, z]: &[Column; 3]| {
-            Vector::new(self.gathered::<L>(x), self.gathered::<L>(y), self.gathered::<L>(z))
-        };
-        Line {
-            origin: vector(&self.packet.origin),
-            origin_low: DEPARTING.then(|| vector(&self.packet.origin_low)),
-            direction: vector(&self.packet.direction),
-            a: self.gathered(&self.packet.a),
-            inverse_a: self.gathered(&self.packet.inverse_a),
         }
     }
 
@@ -235,14 +209,14 @@ impl<L: Single> RayLanes<L> for PickedLanes<'_> {
         hierarchy: &Hierarchy,
         candidate: &Candidate<L>,
         mask: L::Mask,
-        (spot, id): (Spot, u32),
+        at: (Spot, u32),
     ) {
         let Candidate { t, error, hit, unclear } = *candidate;
         let mut unclear = (unclear & mask).bits();
         while unclear != 0 {
             let row = self.row(unclear.trailing_zeros() as usize);
             unclear &= unclear - 1;
-            self.packet.offer_exact::<DEPARTING, ANY>(hierarchy, row, spot);
+            self.packet.offer_exact::<DEPARTING, ANY>(hierarchy, row, at.0);
         }
         let mut bits = (hit & mask).bits();
         if bits == 0 {
@@ -254,33 +228,7 @@ impl<L: Single> RayLanes<L> for PickedLanes<'_> {
         while bits != 0 {
             let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            self.packet.offer_one::<ANY>(hierarchy, self.row(lane), (ts[lane], errors[lane], (spot, id)));
-        }
-    }
-}
-
-impl Packet {
-    /// Takes a hit in if it is nearer, or if any will do.
-    #[inline(always)]
-    fn offer_one<const ANY: bool>(
-        &mut self,
-        hierarchy: &Hierarchy,
-        row: usize,
-        (t, error, (spot, id)): (f32, f32, (Spot, u32)),
-    ) {
-        if ANY && self.t[row] < 0.0 {
-            return;
-        }
-        let nearest = exact::Nearest { t: self.t[row], error: self.error[row], spot: Spot(self.spot[row]) };
-        if !nearest.yields_to::<ANY>(hierarchy, || self.exact(row), (t, error, spot)) {
-            return;
-        }
-        self.is_changed = true;
-        if ANY {
-            (self.t[row], self.end[row]) = (DEAD, DEAD);
-        } else {
-            (self.t[row], self.error[row], self.end[row]) = (t, error, t + error);
-            (self.spot[row], self.id[row]) = (spot.0, id);
+            self.packet.offer_one::<ANY>(hierarchy, self.row(lane), (ts[lane], errors[lane]), at);
         }
     }
 }

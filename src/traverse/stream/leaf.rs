@@ -2,7 +2,7 @@
 
 use super::super::candidate::Candidate;
 use super::super::exact::{self, Spot};
-use super::super::leaf::RayLanes;
+use super::super::leaf::{RayLanes, RayLines};
 use super::rays::{BoxLanes, StreamRays};
 use crate::kernel::RaySpace;
 use crate::kernel::axes_from;
@@ -54,9 +54,24 @@ impl<'a, L: Single> Listed<'a, L> {
     }
 }
 
-impl<L: Single> RayLanes<L> for Listed<'_, L> {
+impl<L: Single> RayLines<L> for Listed<'_, L> {
     const ARE_ALIKE: bool = false;
 
+    #[inline(always)]
+    fn line<const DEPARTING: bool>(&self) -> Line<L> {
+        let [x, y, z, a, inverse_a, ..] = self.rays.lines(self.numbers);
+        let [.., low_x, low_y, low_z, _] = self.faces;
+        Line {
+            origin: self.boxes.origin,
+            origin_low: DEPARTING.then(|| Vector::new(low_x, low_y, low_z)),
+            direction: Vector::new(x, y, z),
+            a,
+            inverse_a,
+        }
+    }
+}
+
+impl<L: Single> RayLanes<L> for Listed<'_, L> {
     #[inline(always)]
     fn axes(&self) -> [usize; 3] {
         axes_from(self.rays.class.third)
@@ -76,19 +91,6 @@ impl<L: Single> RayLanes<L> for Listed<'_, L> {
             origin_low: DEPARTING.then(|| turned(low_x, low_y, low_z)),
             shear: [shear_x, shear_y],
             t_per_z,
-        }
-    }
-
-    #[inline(always)]
-    fn line<const DEPARTING: bool>(&self) -> Line<L> {
-        let [x, y, z, a, inverse_a, ..] = self.rays.lines(self.numbers);
-        let [.., low_x, low_y, low_z, _] = self.faces;
-        Line {
-            origin: self.boxes.origin,
-            origin_low: DEPARTING.then(|| Vector::new(low_x, low_y, low_z)),
-            direction: Vector::new(x, y, z),
-            a,
-            inverse_a,
         }
     }
 
