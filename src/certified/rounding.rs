@@ -5,7 +5,8 @@
 //! distance of its points from o. Moved by δ,
 //!
 //! - an outline or a limb passes the ray on either side if it is no farther from it than δ,
-//! - a plane is met at t ± δ/(|d|·cos θ), θ the angle of the ray to its normal, and no nearer or farther than its corners ± δ/|d|,
+//! - a plane is met at t ± δ/(|d|·cos θ), θ the angle of the ray to its normal, and no nearer or farther than its corners, t of a
+//!   corner being told along the axis i in which the ray is fastest, ± δ/|dᵢ|,
 //! - a sphere is met between where lines at l − δ and l + δ from its centre meet it, l being the ray's own distance.
 //!
 //! These are distances in f64, off by some 2⁻⁵⁰·L: a 2⁻²⁴th of what they are compared with. What is decided exactly is decided
@@ -80,9 +81,23 @@ pub(super) struct View {
 }
 
 enum Kind {
-    Face { middle: f64, cosine: f64, corners: [f64; 2] },
-    Sphere { middle: f64, off_center: f64, radius: f64 },
-    FarSide { middle: f64, off_center: f64, radius: f64 },
+    /// `along` is the share of the direction that is along its fastest axis.
+    Face {
+        middle: f64,
+        cosine: f64,
+        corners: [f64; 2],
+        along: f64,
+    },
+    Sphere {
+        middle: f64,
+        off_center: f64,
+        radius: f64,
+    },
+    FarSide {
+        middle: f64,
+        off_center: f64,
+        radius: f64,
+    },
     Never,
 }
 
@@ -113,19 +128,26 @@ impl View {
                 let corners = face.corners();
                 let farthest =
                     corners.iter().map(|&corner| (corner - line.origin).length()).fold(0.0, f64::max);
-                let sight: Vec<(DVec3, f64)> = corners.iter().map(|&corner| seen(corner)).collect();
+                let sight: Vec<DVec3> = corners.iter().map(|&corner| seen(corner).0).collect();
                 let next = sight.iter().cycle().skip(1);
                 let to_edge =
-                    sight.iter().zip(next).map(|(a, b)| to_segment(a.0, b.0)).fold(f64::INFINITY, f64::min);
-                let ends =
-                    sight.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &(_, along)| {
-                        [least.min(along), most.max(along)]
-                    });
+                    sight.iter().zip(next).map(|(&a, &b)| to_segment(a, b)).fold(f64::INFINITY, f64::min);
+                let axis = direction.abs().max_position();
+                let alongs =
+                    corners.iter().map(|corner| (corner[axis] - line.origin[axis]) / direction[axis]);
+                let ends = alongs.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], along| {
+                    [least.min(along), most.max(along)]
+                });
                 let normal = face.normal().normalize_or_zero();
                 let cosine = normal.dot(direction);
                 let middle = normal.dot(corners[0] - line.origin) / cosine;
                 let kind = match departure {
-                    None => Kind::Face { middle, cosine: cosine.abs(), corners: ends },
+                    None => Kind::Face {
+                        middle,
+                        cosine: cosine.abs(),
+                        corners: ends,
+                        along: direction[axis].abs(),
+                    },
                     Some(_) => Kind::Never,
                 };
                 let is_inside = match face {
@@ -154,11 +176,12 @@ impl View {
         let t = |[from, to]: [f64; 2]| Some([from / self.speed, to / self.speed]);
         match self.kind {
             Kind::Never => ([None; 2], false),
-            Kind::Face { middle, cosine, corners: [least, most] } => {
+            Kind::Face { middle, cosine, corners: [least, most], along } => {
                 let slack = roundings * self.unit_of_t / cosine;
                 // Edge-on, these are no numbers, which max and min pass over.
-                let from = (middle - slack).max(least - off).min(most + off);
-                let to = (middle + slack).min(most + off).max(least - off);
+                let [least, most] = [least - off / along, most + off / along];
+                let from = (middle - slack).max(least).min(most);
+                let to = (middle + slack).min(most).max(least);
                 ([t([from, to]), None], is_sure)
             }
             Kind::Sphere { middle, off_center, radius } => {

@@ -59,7 +59,7 @@ impl Judge {
             0.0
         } else {
             let sights = self.sights(stretch, |_| true);
-            least_roundings(|roundings| sights.admit(stretch, answer.id, roundings))
+            least_roundings(|roundings| sights.admit(stretch, answer.id, roundings)).max(LEAST_ROUNDINGS)
         };
         let own = answer.id.and_then(|id| self.view(stretch, id));
         let t = own.as_ref().map(|own| {
@@ -91,13 +91,14 @@ impl Judge {
             0.0
         } else {
             let sights = self.sights(stretch, |primitive| primitive.casts_shadow);
-            least_roundings(|roundings| {
+            let least = least_roundings(|roundings| {
                 if occluded {
                     sights.may_occlude(stretch, roundings)
                 } else {
                     sights.may_let_pass(stretch, roundings)
                 }
-            })
+            });
+            least.max(LEAST_ROUNDINGS)
         };
         let verdict = match decision {
             0.0 => Verdict::Right,
@@ -171,20 +172,23 @@ impl Sights {
     }
 }
 
+/// What takes less is not told apart. What is moved is f64, so an answer that exact arithmetic finds wrong may need no move there; it
+/// needs this much.
+const LEAST_ROUNDINGS: f64 = 1.0 / (1 << 20) as f64;
+
 /// The least number of roundings for which something holds that holds for all larger ones too, to a 1000th of itself; infinite beyond 2⁵⁰.
 fn least_roundings(holds: impl Fn(f64) -> bool) -> f64 {
-    const LEAST: f64 = 1.0 / (1 << 20) as f64;
     if holds(0.0) {
         return 0.0;
     }
-    let mut high = LEAST;
+    let mut high = LEAST_ROUNDINGS;
     while !holds(high) {
         high *= 2.0;
         if high > (1_u64 << 50) as f64 {
             return f64::INFINITY;
         }
     }
-    let mut low = if high == LEAST { 0.0 } else { high / 2.0 };
+    let mut low = if high == LEAST_ROUNDINGS { 0.0 } else { high / 2.0 };
     for _ in 0..10 {
         let middle = low + (high - low) / 2.0;
         *(if holds(middle) { &mut high } else { &mut low }) = middle;

@@ -289,12 +289,17 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
     let rounding = rounding_at(ray, extent);
     let t = (normal.dot(vertices[0] - ray.origin) / slope).clamp(low_t, high_t);
     let t = exact_beside_start(ray, vertices, (normal, rounding), t);
-    if has_both_sides && starts_in_plane(ray, vertices, normal, rounding) {
+    let bend = vertices.iter().map(|&vertex| normal.dot(vertex - vertices[0]).abs()).fold(0.0, f64::max);
+    let start_height = normal.dot(ray.at(ray.t_min) - vertices[0]).abs();
+    if has_both_sides && start_height <= bend + rounding {
         match in_plane::part_beyond(ray, vertices, rounding) {
             Part::StartsOn => {}
             Part::Met(_) if t > ray.t_min => return Some(t),
-            Part::Met(edge_t) if edge_t > ray.t_min => return Some(edge_t),
-            Part::Met(_) => return Some(ray.t_min.next_up()),
+            Part::Met(edge_t) => {
+                // No later than the plane, which seen edge-on may be anywhere.
+                let latest = t + (rounding + bend) / slope.abs();
+                return Some(edge_t.min(latest).max(ray.t_min.next_up()));
+            }
             Part::Passed => return None,
         }
     }
@@ -303,13 +308,6 @@ pub(super) fn polygon(ray: &Ray, vertices: &[DVec3], normal: DVec3) -> Option<f6
     }
     let is_edge_on = slope.abs() < Meeting::LEAST_COSINE * ray.direction.length();
     Some(if is_edge_on { in_plane::kept_between_edges(ray, vertices, t) } else { t })
-}
-
-/// Whether a ray starts no farther from the plane than the polygon is bent, and than coordinates are rounded.
-fn starts_in_plane(ray: &Ray, vertices: &[DVec3], normal: DVec3, rounding: f64) -> bool {
-    let height = |point: DVec3| normal.dot(point - vertices[0]).abs();
-    let bend = vertices.iter().map(|&vertex| height(vertex)).fold(0.0, f64::max);
-    height(ray.at(ray.t_min)) <= bend + rounding
 }
 
 /// t of a face that is met no farther from where the ray starts than rounding can tell: that of the plane by a normal whose length
@@ -321,11 +319,19 @@ fn exact_beside_start(ray: &Ray, vertices: &[DVec3], (normal, rounding): (DVec3,
         return t;
     }
     let double_area = double_area(vertices);
-    let t = double_area.dot(vertices[0] - ray.origin) / double_area.dot(ray.direction);
+    let t = double_area.dot(point_of_plane(ray, vertices) - ray.origin) / double_area.dot(ray.direction);
     // Edge-on it may be anywhere, but the face is where its vertices are.
     let ts = || vertices.iter().map(|&vertex| ray.project(vertex).z);
     let slack = rounding / ray.direction.abs().max_element();
     t.clamp(ts().fold(f64::INFINITY, f64::min) - slack, ts().fold(f64::NEG_INFINITY, f64::max) + slack)
+}
+
+/// The corner that a face's plane goes through. Of three any will do, and the nearest to where the ray starts is at height 0 if it
+/// starts there; more may not be quite in a plane, and then it is the first.
+fn point_of_plane(ray: &Ray, vertices: &[DVec3]) -> DVec3 {
+    let distance = |vertex: &DVec3| vertex.distance_squared(ray.origin);
+    let nearest = vertices.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.filter(|_| vertices.len() == 3).unwrap_or(vertices[0])
 }
 
 /// Whether an edge crosses the half-line from the ray's foot along x. Half open: a vertex level with the foot counts as above

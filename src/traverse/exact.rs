@@ -170,6 +170,9 @@ const LEAST_COSINE: f64 = 1.0 / (1 << 12) as f64;
 /// them, and f64 rounds some tens of times by 2⁻⁵³.
 const TOUCHING: f64 = 1.0 / (1_u64 << 45) as f64;
 
+/// How far f32 may take a face to be from where it is, in roundings of its farthest corner's distance.
+const OFF_PLANE: f64 = 4.0;
+
 impl Line {
     /// `origin_low` is what the origin's rounding to f32 left out.
     pub(super) fn new([origin, origin_low, direction]: [[f32; 3]; 3], departure: u32, t_min: f32) -> Self {
@@ -186,19 +189,27 @@ impl Line {
             Shape::Sphere { center, radius, .. } => {
                 self.sphere(center, radius).into_iter().find_map(|hit| self.beyond_t_min(hit.t))
             }
-            Shape::Triangle(vertices) => self.meets_face_beyond(&vertices),
-            Shape::Polygon(corners) => self.meets_face_beyond(&corners),
+            Shape::Triangle(vertices) => self.meets_face_beyond(&vertices, 0.0),
+            Shape::Polygon(corners) => self.meets_face_beyond(&corners, hierarchy.bend(spot.id(hierarchy))),
         }
     }
 
-    fn meets_face_beyond(&self, corners: &[DVec3]) -> Option<f32> {
-        let t = self.face(corners).t;
+    /// `bend` is how far corners are off the plane.
+    fn meets_face_beyond(&self, corners: &[DVec3], bend: f64) -> Option<f32> {
+        let Hit { t, cosine } = self.face(corners);
         let outline = Outline::new(self.origin, self.direction, corners);
         let slack = TOUCHING * (extent_of(corners) + self.origin.abs().max_element());
         match outline.part_beyond(f64::from(self.t_min), slack) {
             Part::StartsOn if outline.is_foot_inside() => self.beyond_t_min(t),
             Part::StartsOn | Part::Passed => None,
             Part::Met(edge_t) => {
+                // No later than the plane, as well as f32 tells where that is; seen edge-on it may be anywhere.
+                let reach =
+                    extent_of(&corners.iter().map(|&corner| corner - self.origin).collect::<Vec<_>>());
+                let rounding = OFF_PLANE * f64::from(UNIT_ROUNDOFF) * reach;
+                let latest = t + rounding / (cosine * self.direction.length());
+                let is_late = edge_t > latest && latest > f64::from(self.t_min);
+                let edge_t = if is_late { latest } else { edge_t };
                 self.beyond_t_min(t).or_else(|| self.beyond_t_min(edge_t)).or(Some(self.t_min.next_up()))
             }
         }
@@ -336,10 +347,10 @@ impl Line {
     /// Where the line meets the plane of a face, by the one normal that every question to `exact` is answered with: seen
     /// edge-on, another normal's last bit would be another t.
     fn face(&self, corners: &[DVec3]) -> Hit {
-        let point = corners[0];
+        let point = self.point_of_plane(corners);
         // Of a length that loses nothing: a start that is exactly in the plane is at height 0.
         let normal = double_area(corners);
-        let (mut low, mut high) = (point, point);
+        let (mut low, mut high) = (corners[0], corners[0]);
         for &corner in corners {
             (low, high) = (low.min(corner), high.max(corner));
         }
@@ -357,6 +368,14 @@ impl Line {
         let t = if t <= leave { t } else { leave };
         let t = if t >= enter { t } else { enter };
         Hit { t, cosine: slope.abs() / (normal.length() * self.direction.length()) }
+    }
+
+    /// The corner that a face's plane goes through. Of three any will do, and the nearest to where the ray starts is at height 0 if it
+    /// starts there; more may not be quite in a plane, and then it is the first.
+    fn point_of_plane(&self, corners: &[DVec3]) -> DVec3 {
+        let distance = |corner: &DVec3| corner.distance_squared(self.origin);
+        let nearest = corners.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.filter(|_| corners.len() == 3).unwrap_or(corners[0])
     }
 }
 

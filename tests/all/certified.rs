@@ -205,6 +205,20 @@ proptest! {
         }
     }
 
+    /// Whatever f64 makes of the triangle's plane.
+    #[test]
+    fn a_triangle_is_not_met_from_its_own_corner(corners in [point(), point(), point()], at in 0..3_usize, aims in prop::collection::vec(point(), 1..20)) {
+        let scene = scene_of(&[Shape::Triangle(corners)]);
+        let [x, y, z] = corners[at].to_array();
+        let aims = aims.into_iter().map(<[f32; 3]>::from).filter(|aim| *aim != [0.0; 3]);
+        let rays: Vec<[f32; 8]> = aims.map(|[dx, dy, dz]| [x, y, z, 0.0, dx, dy, dz, f32::INFINITY]).collect();
+        for (engine, hits) in answers(&scene, &ray_set(&rays), Query::Closest).iter().enumerate() {
+            for (row, &id) in hits.id.iter().enumerate() {
+                prop_assert!(id == Hits::MISS, "engine {engine}, {:?}: met at {:e}", rays[row], hits.t[row]);
+            }
+        }
+    }
+
     /// A million times as large or as small: t is scaled, and nothing else changes by a bit.
     #[test]
     fn engines_see_the_same_at_every_scale((shapes, rows) in case(), power in prop::sample::select(vec![-20, 20])) {
