@@ -189,23 +189,21 @@ impl Line {
             Shape::Sphere { center, radius, .. } => {
                 self.sphere(center, radius).into_iter().find_map(|hit| self.beyond_t_min(hit.t))
             }
-            Shape::Triangle(vertices) => self.meets_face_beyond(&vertices, 0.0),
-            Shape::Polygon(corners) => self.meets_face_beyond(&corners, hierarchy.bend(spot.id(hierarchy))),
+            Shape::Triangle(vertices) => self.meets_face_beyond(&vertices),
+            Shape::Polygon(corners) => self.meets_face_beyond(&corners),
         }
     }
 
-    /// `bend` is how far corners are off the plane.
-    fn meets_face_beyond(&self, corners: &[DVec3], bend: f64) -> Option<f32> {
+    fn meets_face_beyond(&self, corners: &[DVec3]) -> Option<f32> {
         let Hit { t, cosine } = self.face(corners);
         let outline = Outline::new(self.origin, self.direction, corners);
-        let slack = TOUCHING * (extent_of(corners) + self.origin.abs().max_element());
+        let slack = TOUCHING * (extent_of(corners.iter().copied()) + self.origin.abs().max_element());
         match outline.part_beyond(f64::from(self.t_min), slack) {
             Part::StartsOn if outline.is_foot_inside() => self.beyond_t_min(t),
             Part::StartsOn | Part::Passed => None,
             Part::Met(edge_t) => {
                 // No later than the plane, as well as f32 tells where that is; seen edge-on it may be anywhere.
-                let reach =
-                    extent_of(&corners.iter().map(|&corner| corner - self.origin).collect::<Vec<_>>());
+                let reach = extent_of(corners.iter().map(|&corner| corner - self.origin));
                 let rounding = OFF_PLANE * f64::from(UNIT_ROUNDOFF) * reach;
                 let latest = t + rounding / (cosine * self.direction.length());
                 let is_late = edge_t > latest && latest > f64::from(self.t_min);
@@ -227,7 +225,8 @@ impl Line {
     pub(super) fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         let bend = hierarchy.bend(self.departure >> 1) + hierarchy.bend(spot.id(hierarchy));
         let departs_to_face = |corners: &[DVec3]| {
-            let t = self.beyond_rounding(self.face(corners), 0.0, extent_of(corners), bend)?;
+            let t =
+                self.beyond_rounding(self.face(corners), 0.0, extent_of(corners.iter().copied()), bend)?;
             self.is_in(corners).then_some(t)
         };
         match spot.shape(hierarchy) {
@@ -394,8 +393,8 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-fn extent_of(points: &[DVec3]) -> f64 {
-    points.iter().fold(0.0, |extent, point| {
+fn extent_of(points: impl Iterator<Item = DVec3>) -> f64 {
+    points.fold(0.0, |extent, point| {
         let largest = point.abs().max_element();
         if largest > extent { largest } else { extent }
     })
