@@ -126,16 +126,21 @@ impl RayColumns {
         self.t_max.len()
     }
 
-    /// Rays of a run of rows that begins and ends with whole runs of [`RUN`].
-    pub(crate) fn rays(&self, rows: &Range<usize>) -> Rays<'_> {
+    /// All rays.
+    pub(crate) fn rays(&self) -> Rays<'_> {
         Rays {
-            origin: [0, 1, 2].map(|axis| &self.origin[axis][rows.clone()]),
-            origin_low: [0, 1, 2].map(|axis| self.origin_low[axis].get(rows.clone()).unwrap_or(&[])),
-            direction: [0, 1, 2].map(|axis| &self.direction[axis][rows.clone()]),
-            departure: self.departure.get(rows.clone()).unwrap_or(&[]),
-            t_min: self.t_min.get(rows.clone()).unwrap_or(&[]),
-            count: rows.len().min(self.count - rows.start),
+            origin: self.origin.each_ref().map(Vec::as_slice),
+            origin_low: self.origin_low.each_ref().map(Vec::as_slice),
+            direction: self.direction.each_ref().map(Vec::as_slice),
+            departure: &self.departure,
+            t_min: &self.t_min,
+            count: self.count,
         }
+    }
+
+    /// Where hits end to be of interest.
+    pub(super) fn t_max(&self, rows: &Range<usize>) -> &[f32] {
+        &self.t_max[rows.clone()]
     }
 
     /// Sets ends to what rays have before they are traced.

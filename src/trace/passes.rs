@@ -6,9 +6,9 @@ use crate::lanes::{self, Single, Width};
 use crate::prepare::Prepared;
 use crate::rays::RaySet;
 use crate::reference::Tracer;
-use crate::traverse::{self, Counts, Ends, RUN, Walker};
+use crate::traverse::{self, Counts, Ends, RUN, Shuffled, Walkers};
 use rayon::prelude::*;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::ops::Add;
 use std::time::Instant;
 
 /// Rays to be traced by the wavefront engine's kernels.
@@ -18,9 +18,12 @@ pub struct Run<'a> {
     query: Query,
     ends: EndColumns,
     counts: Counts,
-    /// Those that no thread uses, for the next pass.
-    walkers: Mutex<Vec<Walker>>,
+    walkers: Walkers,
+    shuffled: Shuffled,
 }
+
+/// Rays in no order that are sorted at a time, which takes 48 bytes a ray.
+const MOST_SORTED: usize = 1 << 22;
 
 impl<'a> Run<'a> {
     /// Makes room for what will be hit.
@@ -33,16 +36,18 @@ impl<'a> Run<'a> {
             query,
             ends: EndColumns { t: vec![0.0; columns.filled()], id: vec![0; ids] },
             counts: Counts::default(),
-            walkers: Mutex::default(),
+            walkers: Walkers::default(),
+            shuffled: Shuffled::default(),
         }
     }
 
     /// Traces all rays once, on the threads of a pool, and returns wall-clock seconds: from rays in columns to hits in
     /// columns, both in the scene's scale.
     pub fn pass(&mut self, width: Width, pool: &rayon::ThreadPool) -> f64 {
-        let Self { prepared, columns, query, ends, counts, walkers } = self;
+        let Self { prepared, columns, query, ends, counts, walkers, shuffled } = self;
         let start = Instant::now();
-        *counts = pool.install(|| width.run(Pass { prepared, columns, query: *query, ends, walkers }));
+        *counts =
+            pool.install(|| width.run(Pass { prepared, columns, query: *query, ends, walkers, shuffled }));
         start.elapsed().as_secs_f64()
     }
 
@@ -124,47 +129,69 @@ struct Pass<'a> {
     columns: &'a RayColumns,
     query: Query,
     ends: &'a mut EndColumns,
-    walkers: &'a Mutex<Vec<Walker>>,
+    walkers: &'a Walkers,
+    shuffled: &'a mut Shuffled,
 }
 
 impl lanes::Job for Pass<'_> {
     type Output = Counts;
 
     fn run<F: Single>(self) -> Counts {
-        let Self { prepared, columns, query, ends, walkers } = self;
-        let batch =
-            traverse::batch(columns.rays(&(0..columns.filled())).origin, rayon::current_num_threads());
+        let columns = self.columns;
+        if traverse::is_local(columns.rays().origin, columns.count()) {
+            self.in_order::<F>()
+        } else {
+            self.in_no_order::<F>()
+        }
+    }
+}
+
+impl Pass<'_> {
+    fn in_order<F: Single>(self) -> Counts {
+        let Self { prepared, columns, query, ends, walkers, .. } = self;
+        let batch = traverse::batch(columns.filled(), rayon::current_num_threads());
         let trace = |index: usize, ends: &mut Ends<'_>| {
             let rows = index * batch..index * batch + ends.t.len();
-            let rays = columns.rays(&rows);
+            let rays = columns.rays().rows(rows.clone());
             columns.begin(&rows, ends);
             let mut counts = Counts::default();
-            let mut walker = lock(walkers).pop().unwrap_or_else(Walker::new);
-            match query {
+            walkers.lend(|walker| match query {
                 Query::Closest => walker.closest::<F>(&prepared.hierarchy, &rays, ends, &mut counts),
                 Query::Any => walker.occluded::<F>(&prepared.hierarchy, &rays, ends, &mut counts),
-            }
-            lock(walkers).push(walker);
+            });
             counts
-        };
-        let sum = |mut a: Counts, b: Counts| {
-            a += b;
-            a
         };
         let ts = ends.t.par_chunks_mut(batch).enumerate();
         match query {
             Query::Closest => ts
                 .zip(ends.id.par_chunks_mut(batch))
                 .map(|((index, t), id)| trace(index, &mut Ends { t, id }))
-                .reduce(Counts::default, sum),
-            Query::Any => {
-                ts.map(|(index, t)| trace(index, &mut Ends { t, id: &mut [] })).reduce(Counts::default, sum)
-            }
+                .reduce(Counts::default, Counts::add),
+            Query::Any => ts
+                .map(|(index, t)| trace(index, &mut Ends { t, id: &mut [] }))
+                .reduce(Counts::default, Counts::add),
         }
     }
-}
 
-/// Whatever a thread that panicked left there is as good as new.
-fn lock(walkers: &Mutex<Vec<Walker>>) -> MutexGuard<'_, Vec<Walker>> {
-    walkers.lock().unwrap_or_else(PoisonError::into_inner)
+    fn in_no_order<F: Single>(self) -> Counts {
+        let Self { prepared, columns, query, ends, walkers, shuffled } = self;
+        let hierarchy = &prepared.hierarchy;
+        let mut counts = Counts::default();
+        for first in (0..columns.filled()).step_by(MOST_SORTED) {
+            let rows = first..columns.filled().min(first + MOST_SORTED);
+            let rays = (&columns.rays().rows(rows.clone()), columns.t_max(&rows));
+            let t = &mut ends.t[rows.clone()];
+            counts += match query {
+                Query::Closest => {
+                    let mut ends = Ends { t, id: &mut ends.id[rows] };
+                    shuffled.trace::<F, false>(hierarchy, rays, &mut ends, walkers)
+                }
+                Query::Any => {
+                    let mut ends = Ends { t, id: &mut [] };
+                    shuffled.trace::<F, true>(hierarchy, rays, &mut ends, walkers)
+                }
+            };
+        }
+        counts
+    }
 }

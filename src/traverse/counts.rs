@@ -1,6 +1,6 @@
 //! What a walk did.
 
-use std::ops::AddAssign;
+use std::ops::{Add, AddAssign};
 
 /// Operations of lanes, and how many lanes held something that was wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,5 +70,14 @@ impl AddAssign for Counts {
         self.triangles += other.triangles;
         self.polygons += other.polygons;
         self.in_packets += other.in_packets;
+    }
+}
+
+impl Add for Counts {
+    type Output = Self;
+
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
     }
 }

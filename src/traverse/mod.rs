@@ -13,6 +13,7 @@
 //! - `sight`: bounds of what several rays see, for `edges` and for triangles that packets miss
 //! - `terms`: what the tests need of a ray beside origin and direction, for streams and rays alone
 //! - `coherence`, `regroup`: which rays are alike, and how others are put together
+//! - `shuffled`: rays that come in no order, sorted before threads share them
 //!
 //! All do the same arithmetic at the primitive, box tests never exclude a hit, and which of two hits is seen does not
 //! depend on which is found first, so it does not show who walked. A [`Walker`] chooses for each run of 64 rays.
@@ -27,6 +28,7 @@ mod in_plane;
 mod leaf;
 mod packet;
 mod regroup;
+mod shuffled;
 mod sight;
 mod single;
 mod stream;
@@ -35,12 +37,15 @@ mod terms;
 mod tests;
 
 pub(crate) use counts::{Counts, LaneUse};
+pub(crate) use shuffled::{Shuffled, is_local};
 pub(crate) use single::{Ray as SingleRay, leaves};
 
 use crate::lanes::Single;
 use crate::prepare::Hierarchy;
 use packet::{PACKET, Packet};
 use regroup::{Incoming, WINDOW};
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 use stream::Stream;
 
 /// Rays in columns, in runs of [`RUN`]: where the last run is not full, rows that cannot hit fill it, with t < 0.
@@ -57,6 +62,23 @@ pub(crate) struct Rays<'a> {
     pub(crate) t_min: &'a [f32],
     /// How many there are, without those that fill up.
     pub(crate) count: usize,
+}
+
+impl<'a> Rays<'a> {
+    /// Those of some whole runs of rows.
+    pub(crate) fn rows(&self, rows: Range<usize>) -> Rays<'a> {
+        fn of<'a, T>(rows: &Range<usize>, column: &'a [T]) -> &'a [T] {
+            column.get(rows.clone()).unwrap_or(&[])
+        }
+        Rays {
+            origin: self.origin.map(|column| of(&rows, column)),
+            origin_low: self.origin_low.map(|column| of(&rows, column)),
+            direction: self.direction.map(|column| of(&rows, column)),
+            departure: of(&rows, self.departure),
+            t_min: of(&rows, self.t_min),
+            count: rows.len().min(self.count - rows.start),
+        }
+    }
 }
 
 /// Where rays end.
@@ -90,17 +112,63 @@ const DEAR_BOXES: u64 = 5 * RUN as u64 / 2;
 
 /// Finds what rays hit. Its memory is used again for every batch.
 pub(crate) struct Walker {
-    packet: Box<Packet>,
-    packet_stack: Box<packet::Stack>,
+    packets: Packets,
     incoming: Incoming,
     stream: Stream,
+}
+
+/// Walks runs of rays that are alike.
+struct Packets {
+    packet: Box<Packet>,
+    stack: Box<packet::Stack>,
+    /// Runs to be left to streams, and how many after the next that is dear.
+    runs_without: usize,
+    next_runs_without: usize,
+}
+
+impl Packets {
+    /// Before rays of another batch.
+    fn begin(&mut self) {
+        (self.runs_without, self.next_runs_without) = (0, 1);
+        self.packet.clear();
+    }
+
+    /// Walks a run of [`RUN`] rows, `count` of which are rays, if they are alike.
+    #[inline(always)]
+    fn walk<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        ends: &mut Ends<'_>,
+        (first, count): (usize, usize),
+        counts: &mut Counts,
+    ) -> bool {
+        if self.runs_without > 0 || !self.packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
+            self.runs_without = self.runs_without.saturating_sub(1);
+            return false;
+        }
+        let boxes = counts.boxes.calls;
+        self.packet.walk::<F, DEPARTING, ANY>(hierarchy, &mut self.stack, counts);
+        self.packet.scatter::<ANY>(ends, first);
+        if counts.boxes.calls - boxes > DEAR_BOXES {
+            self.runs_without = self.next_runs_without;
+            self.next_runs_without = (2 * self.next_runs_without).min(RUNS_WITHOUT);
+        } else {
+            self.next_runs_without = 1;
+        }
+        true
+    }
 }
 
 impl Walker {
     pub(crate) fn new() -> Self {
         Self {
-            packet: Box::new(Packet::new()),
-            packet_stack: Box::new(packet::EMPTY_STACK),
+            packets: Packets {
+                packet: Box::new(Packet::new()),
+                stack: Box::new(packet::EMPTY_STACK),
+                runs_without: 0,
+                next_runs_without: 1,
+            },
             incoming: Incoming::default(),
             stream: Stream::new(),
         }
@@ -152,46 +220,62 @@ impl Walker {
         if hierarchy.nodes.is_empty() {
             return;
         }
-        let by_origin = rays.count > WINDOW && !regroup::is_local(rays.origin, rays.count);
-        let (mut runs_without_packets, mut next_runs_without) = (0, 1);
         self.incoming.clear();
-        self.packet.clear();
+        self.packets.begin();
         for first in (0..rays.count).step_by(RUN) {
-            let count = (rays.count - first).min(RUN);
-            let packet = &mut self.packet;
-            if runs_without_packets == 0 && packet.gather::<F>(hierarchy, rays, ends.t, first, count) {
-                let boxes = counts.boxes.calls;
-                packet.walk::<F, DEPARTING, ANY>(hierarchy, &mut self.packet_stack, counts);
-                packet.scatter::<ANY>(ends, first);
-                if counts.boxes.calls - boxes > DEAR_BOXES {
-                    runs_without_packets = next_runs_without;
-                    next_runs_without = (2 * next_runs_without).min(RUNS_WITHOUT);
-                } else {
-                    next_runs_without = 1;
+            let run = (first, (rays.count - first).min(RUN));
+            if !self.packets.walk::<F, DEPARTING, ANY>(hierarchy, rays, ends, run, counts) {
+                self.incoming.push_run::<F, DEPARTING>(rays, ends.t, run);
+                if self.incoming.len() >= WINDOW {
+                    self.stream::<F, DEPARTING, ANY>(hierarchy, ends, counts);
                 }
-                continue;
-            }
-            runs_without_packets = runs_without_packets.saturating_sub(1);
-            self.incoming.push_run::<F, DEPARTING>(rays, ends.t, (first, count));
-            if !by_origin && self.incoming.len() >= WINDOW {
-                self.stream::<F, DEPARTING, ANY>(hierarchy, by_origin, ends, counts);
             }
         }
-        self.stream::<F, DEPARTING, ANY>(hierarchy, by_origin, ends, counts);
+        self.stream::<F, DEPARTING, ANY>(hierarchy, ends, counts);
+    }
+
+    /// Walks runs of rays that are alike, and puts the others aside.
+    fn packets<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        rays: &Rays<'_>,
+        ends: &mut Ends<'_>,
+        aside: &mut Incoming,
+        counts: &mut Counts,
+    ) {
+        if hierarchy.nodes.is_empty() {
+            return;
+        }
+        self.packets.begin();
+        for first in (0..rays.count).step_by(RUN) {
+            let run = (first, (rays.count - first).min(RUN));
+            if !self.packets.walk::<F, DEPARTING, ANY>(hierarchy, rays, ends, run, counts) {
+                aside.push_run::<F, DEPARTING>(rays, ends.t, run);
+            }
+        }
+    }
+
+    /// Traces rays that were put aside.
+    fn streams<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        take_in: impl FnOnce(&mut Incoming),
+        ends: &mut Ends<'_>,
+        counts: &mut Counts,
+    ) {
+        self.incoming.clear();
+        take_in(&mut self.incoming);
+        self.stream::<F, DEPARTING, ANY>(hierarchy, ends, counts);
     }
 
     /// Traces those that packets left.
     fn stream<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
-        by_origin: bool,
         ends: &mut Ends<'_>,
         counts: &mut Counts,
     ) {
         let Self { incoming, stream, .. } = self;
-        if by_origin {
-            incoming.sort_by_origin();
-        }
         incoming.each_part(|incoming, places, class| {
             stream.trace::<F, DEPARTING, ANY>(hierarchy, incoming, (places, class), ends, counts);
         });
@@ -199,18 +283,27 @@ impl Walker {
     }
 }
 
-/// How many rays of many to give to a walker at a time: little enough to share among threads, but all that there are of rays
-/// in no order, since the more of them the more likely there are some that go the same way.
-pub(crate) fn batch(origin: [&[f32]; 3], threads: usize) -> usize {
-    const MOST: usize = 1 << 20;
+/// Walkers that threads share; one that none uses is lent again.
+#[derive(Default)]
+pub(crate) struct Walkers(Mutex<Vec<Walker>>);
+
+impl Walkers {
+    pub(crate) fn lend<T>(&self, work: impl FnOnce(&mut Walker) -> T) -> T {
+        // Whatever a thread that panicked left there is as good as new.
+        let idle = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let walker = idle().pop();
+        let mut walker = walker.unwrap_or_else(Walker::new);
+        let done = work(&mut walker);
+        idle().push(walker);
+        done
+    }
+}
+
+/// How many rays of many that come in an order to give to a walker at a time: little enough to share among threads.
+pub(crate) fn batch(count: usize, threads: usize) -> usize {
     /// So many for each thread, where rays are enough: one that is done sooner takes another's.
     const SHARES: usize = 4;
     const LEAST: usize = WINDOW / 4;
-    let count = origin[0].len();
-    if regroup::is_local(origin, count) {
-        let shares = count.div_ceil(threads * WINDOW).max(if threads > 1 { SHARES } else { 1 });
-        count.div_ceil(threads * shares).clamp(LEAST, WINDOW).next_multiple_of(RUN)
-    } else {
-        count.div_ceil(threads).clamp(WINDOW, MOST).next_multiple_of(RUN)
-    }
+    let shares = count.div_ceil(threads * WINDOW).max(if threads > 1 { SHARES } else { 1 });
+    count.div_ceil(threads * shares).clamp(LEAST, WINDOW).next_multiple_of(RUN)
 }

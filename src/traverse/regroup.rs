@@ -2,12 +2,13 @@
 //! become neighbours.
 //!
 //! Rays mostly come in an order of their own, that of pixels, and keep near each other what starts near each other. Then they
-//! are only parted by class, which takes a few ns a ray; to sort them by origin as well cost more than it gave, 2026-11. Only
-//! where they come in no order at all, and many of them, are they sorted by origin first.
+//! are only parted by class, which takes a few ns a ray; to sort them by origin as well cost more than it gave, 2026-11. Rays that
+//! come in no order are sorted by origin before: see `shuffled`.
 
 use super::stream::{AHEAD, CAPACITY, Class};
 use super::{RUN, Rays};
-use crate::lanes::{Lanes, Record, Single, prefetch};
+use crate::lanes::{Record, Single, prefetch};
+use std::ops::Range;
 
 /// Rays that are parted by class at a time: as many as stay in the cache, and enough for long lists. Of 8192, 16,384 and
 /// 32,768 rays in an order the last were fastest on four scenes; 65,536 and 262,144 were slower when rays were also sorted in
@@ -27,13 +28,9 @@ pub(super) struct Incoming {
     classes: Vec<u8>,
     /// Places of a window, by class.
     parted: Vec<u32>,
-    /// For sorting by origin: cells and places among the rays, and what is being sorted.
-    cells: Vec<(u16, u32)>,
+    /// For reordering.
     moved: Vec<Record>,
 }
-
-/// Bits of a cell along each axis.
-const CELL_BITS: u32 = 5;
 
 /// Third axis and signs of directions.
 const CLASSES: usize = 24;
@@ -97,41 +94,32 @@ impl Incoming {
         }
     }
 
-    /// Sorts all rays by the cells of their origins. They are moved, so that from then on what is read together lies together.
-    pub(super) fn sort_by_origin(&mut self) {
-        let (low, cells_per_length) = self.grid();
-        self.cells.clear();
-        let cells = self.rays.iter().map(|ray| cell(ray, low, cells_per_length));
-        self.cells.extend(cells.zip(0..));
-        radsort::sort_by_key(&mut self.cells, |cell| cell.0);
-        let order = || self.cells.iter().map(|cell| cell.1 as usize);
+    /// Puts rays into an order of their places, so that from then on what is read together lies together.
+    pub(super) fn reorder(&mut self, order: &[(u16, u32)]) {
+        let place = |at: usize| order[at].1 as usize;
         for records in [&mut self.rays, &mut self.departures] {
             if !records.is_empty() {
-                let ahead = |place: usize| self.cells[(place + AHEAD).min(self.cells.len() - 1)].1;
                 self.moved.clear();
-                self.moved.extend(order().enumerate().map(|(at, place)| {
-                    prefetch(records.as_ptr().wrapping_add(ahead(at) as usize).cast());
-                    records[place]
+                self.moved.extend((0..order.len()).map(|at| {
+                    let ahead = place((at + AHEAD).min(order.len() - 1));
+                    prefetch(records.as_ptr().wrapping_add(ahead).cast());
+                    records[place(at)]
                 }));
                 std::mem::swap(records, &mut self.moved);
             }
         }
-        self.rows = order().map(|place| self.rows[place]).collect();
-        self.classes = order().map(|place| self.classes[place]).collect();
+        self.rows = (0..order.len()).map(|at| self.rows[place(at)]).collect();
+        self.classes = (0..order.len()).map(|at| self.classes[place(at)]).collect();
     }
 
-    /// The lowest origin along each axis, and cells for each unit of length.
-    fn grid(&self) -> ([f32; 3], f32) {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for ray in &self.rays {
-            for axis in 0..3 {
-                low[axis] = Lanes::min(ray.0[axis], low[axis]);
-                high[axis] = Lanes::max(ray.0[axis], high[axis]);
-            }
+    /// Takes over a range of another's rays; they get rows from `row` on.
+    pub(super) fn take_over<const DEPARTING: bool>(&mut self, from: &Self, range: Range<usize>, row: usize) {
+        self.rows.extend((row..row + range.len()).map(word));
+        self.classes.extend_from_slice(&from.classes[range.clone()]);
+        self.rays.extend_from_slice(&from.rays[range.clone()]);
+        if DEPARTING {
+            self.departures.extend_from_slice(&from.departures[range]);
         }
-        let extent =
-            (0..3).fold(f32::MIN_POSITIVE, |extent, axis| Lanes::max(high[axis] - low[axis], extent));
-        (low, Lanes::min((1_u32 << CELL_BITS) as f32 / extent, f32::MAX))
     }
 
     /// Visits parts of no more than [`CAPACITY`] places of one class, window by window.
@@ -211,54 +199,9 @@ fn class_of(number: usize) -> Class {
     Class { third: number >> 3, backwards: [0, 1, 2].map(|axis| number >> axis & 1 == 1) }
 }
 
-/// Along a Z-shaped curve.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "cells are few, and counted from 0; what is not a number is in the first"
-)]
-fn cell(ray: &Record, low: [f32; 3], cells_per_length: f32) -> u16 {
-    let last = (1 << CELL_BITS) - 1;
-    let along =
-        |axis: usize| spread_by_3((((ray.0[axis] - low[axis]) * cells_per_length) as u32).min(last)) << axis;
-    (along(0) | along(1) | along(2)) as u16
-}
-
-/// Puts two zeros between bits, of which there are no more than 8. Morton, "A Computer Oriented Geodetic Data Base", 1966.
-fn spread_by_3(word: u32) -> u32 {
-    let word = (word | word << 8) & 0x0300_f00f;
-    let word = (word | word << 4) & 0x030c_30c3;
-    (word | word << 2) & 0x0924_9249
-}
-
 #[expect(clippy::cast_possible_truncation, reason = "rows are numbered in 32 bits")]
-fn word(row: usize) -> u32 {
+pub(super) fn word(row: usize) -> u32 {
     row as u32
-}
-
-/// Whether rays that follow each other start near each other, by some runs of them.
-pub(super) fn is_local(origin: [&[f32]; 3], count: usize) -> bool {
-    const SAMPLED: usize = 32;
-    /// Share of the whole that the runs of rays in an order cover at most.
-    const NEAR: f32 = 0.25;
-    let runs = count / RUN;
-    if runs < SAMPLED {
-        return true;
-    }
-    let extent_of = |rows: &mut dyn Iterator<Item = usize>| {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for row in rows {
-            for axis in 0..3 {
-                low[axis] = Lanes::min(origin[axis][row], low[axis]);
-                high[axis] = Lanes::max(origin[axis][row], high[axis]);
-            }
-        }
-        (0..3).fold(0.0, |extent, axis| Lanes::max(high[axis] - low[axis], extent))
-    };
-    let sampled = || (0..SAMPLED).map(|sample| sample * runs / SAMPLED * RUN);
-    let of_runs: f32 = sampled().map(|first| extent_of(&mut (first..first + RUN))).sum();
-    let of_all = extent_of(&mut sampled().flat_map(|first| first..first + RUN));
-    of_runs <= NEAR * SAMPLED as f32 * of_all
 }
 
 #[cfg(test)]
@@ -266,13 +209,6 @@ mod tests {
     use super::*;
     use crate::kernel::axes_along;
     use crate::random::random_unit;
-
-    #[test]
-    fn cells_follow_a_curve_of_bits() {
-        let cell_of = |[x, y, z]: [f32; 3]| cell(&Record([x, y, z, 0.0, 1.0, 0.0, 0.0, 0.0]), [0.0; 3], 1.0);
-        assert_eq!(cell_of([3.0, 0.0, 1.0]), 0b_001_101);
-        assert_eq!(cell_of([1e30, 0.0, 0.0]), 0b001_001_001_001_001);
-    }
 
     #[test]
     fn each_ray_is_in_one_part_of_its_class() {
@@ -283,10 +219,7 @@ mod tests {
         incoming.rays.extend((0..count).map(|row| Record(std::array::from_fn(|column| number(row, column)))));
         incoming.classes.extend(incoming.rays.iter().map(class_number));
         incoming.rows.extend((0..count).map(word));
-        for by_origin in [false, true] {
-            if by_origin {
-                incoming.sort_by_origin();
-            }
+        {
             let mut seen = vec![0; count];
             incoming.each_part(|incoming, places, class| {
                 assert!(!places.is_empty() && places.len() <= CAPACITY);
@@ -299,16 +232,5 @@ mod tests {
             });
             assert!(seen.iter().all(|&times| times == 1));
         }
-    }
-
-    #[test]
-    fn rays_in_an_order_are_told_from_shuffled_ones() {
-        let count = 100 * RUN;
-        let ordered: Vec<f32> = (0..count).map(|row| row as f32).collect();
-        let shuffled: Vec<f32> = (0..count).map(|row| (row * 7919 % count) as f32).collect();
-        let none = vec![0.0; count];
-        assert!(is_local([&ordered, &none, &none], count));
-        assert!(is_local([&none, &none, &none], count), "from one point");
-        assert!(!is_local([&none, &none, &shuffled], count));
     }
 }

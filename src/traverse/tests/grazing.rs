@@ -3,7 +3,7 @@
 
 use super::Random;
 use super::brute_force::Query;
-use super::rays::{Walk, assert_same_as_all};
+use super::rays::{By, Walk, assert_same_as_all};
 use super::scenes::scene_of;
 use crate::kernel::tests::sight::Sight;
 use crate::kernel::tests::single;
@@ -75,7 +75,13 @@ fn what_is_nearest_does_not_depend_on_which_rays_walk_together() {
                 rays[63].sight.direction = rays[63].sight.direction.map(|component| -component);
             }
             for width in Width::ALL {
-                let walk = Walk { hierarchy: &prepared.hierarchy, rays: &rays, departing: false, any: false };
+                let walk = Walk {
+                    hierarchy: &prepared.hierarchy,
+                    rays: &rays,
+                    departing: false,
+                    any: false,
+                    by: By::Rows,
+                };
                 let found = width.run(walk);
                 assert_eq!((found.t[0], found.id[0]), (t, id), "seed {seed}, {width:?}, {:?}", found.counts);
                 in_packets += found.counts.in_packets;

@@ -7,9 +7,10 @@ use crate::kernel::tests::sight::Sight;
 use crate::kernel::tests::single;
 use crate::lanes::{Job, Single, Width};
 use crate::prepare::{Hierarchy, Prepared};
-use crate::traverse::{Counts, DEAD, Ends, NOTHING, RUN, Rays, Walker};
+use crate::traverse::{Counts, DEAD, Ends, NOTHING, RUN, Rays, Shuffled, Walker, Walkers};
 use glam::DVec3;
 use std::cell::RefCell;
+use std::sync::LazyLock;
 
 /// Rays that agree in the signs and the order of their directions' components: from one point, or side by side.
 pub(super) fn coherent(random: &mut Random, count: usize) -> Vec<Query> {
@@ -83,7 +84,11 @@ pub(super) fn end(random: &mut Random, rays: &mut [Query]) {
 thread_local! {
     /// One for all walks of a test: what one leaves behind must not reach the next, whatever its scene and rays.
     static WALKER: RefCell<Walker> = RefCell::new(Walker::new());
+    static SHUFFLED: RefCell<(Shuffled, Walkers)> = RefCell::default();
 }
+
+static THREADS: LazyLock<rayon::ThreadPool> =
+    LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap());
 
 /// What a walk leaves in the columns, and what it did.
 pub(super) struct Walked {
@@ -98,6 +103,16 @@ pub(super) struct Walk<'a> {
     pub(super) rays: &'a [Query],
     pub(super) departing: bool,
     pub(super) any: bool,
+    pub(super) by: By,
+}
+
+/// Who walks.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum By {
+    /// One walker, row by row.
+    Rows,
+    /// Three threads, each some cells of what rays in no order are sorted by.
+    Cells,
 }
 
 /// What the id of a row that is no ray holds before.
@@ -130,14 +145,28 @@ impl Job for Walk<'_> {
             count,
         };
         let mut counts = Counts::default();
+        let before = t.clone();
         let mut ends = Ends { t: &mut t, id: &mut id };
-        WALKER.with_borrow_mut(|walker| {
-            if self.any {
-                walker.occluded::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
-            } else {
-                walker.closest::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
-            }
-        });
+        match self.by {
+            By::Rows => WALKER.with_borrow_mut(|walker| {
+                if self.any {
+                    walker.occluded::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
+                } else {
+                    walker.closest::<F>(self.hierarchy, &rays, &mut ends, &mut counts);
+                }
+            }),
+            By::Cells => SHUFFLED.with_borrow_mut(|(shuffled, walkers)| {
+                ends.t.fill(f32::NAN);
+                ends.id.iter_mut().take(count).for_each(|id| *id = FILLED);
+                counts = THREADS.install(|| {
+                    if self.any {
+                        shuffled.trace::<F, true>(self.hierarchy, (&rays, &before), &mut ends, walkers)
+                    } else {
+                        shuffled.trace::<F, false>(self.hierarchy, (&rays, &before), &mut ends, walkers)
+                    }
+                });
+            }),
+        }
         Walked { t, id, counts }
     }
 }
@@ -155,14 +184,14 @@ pub(super) fn assert_same_as_all(prepared: &Prepared<'_>, rays: &[Query], depart
         .map(|ray| if departing { ray.occluded::<true>(hierarchy) } else { ray.occluded::<false>(hierarchy) })
         .collect();
     let mut in_packets = 0;
-    for width in Width::ALL {
-        let found = width.run(Walk { hierarchy, rays, departing, any: false });
+    for (width, by) in Width::ALL.into_iter().flat_map(|width| [(width, By::Rows), (width, By::Cells)]) {
+        let found = width.run(Walk { hierarchy, rays, departing, any: false, by });
         for (row, ray) in rays.iter().enumerate() {
             let (t, id) = (found.t[row], found.id[row]);
             let (expected_t, expected_id) = expected[row];
             assert!(
                 (t.to_bits(), id) == (expected_t.to_bits(), expected_id),
-                "{width:?}, row {row} of {}: hit {id} at {t:e}, not {expected_id} at {expected_t:e}, by {ray:?}; {} in packets",
+                "{width:?}, by {by:?}, row {row} of {}: hit {id} at {t:e}, not {expected_id} at {expected_t:e}, by {ray:?}; {} in packets",
                 rays.len(),
                 found.counts.in_packets,
             );
@@ -171,12 +200,12 @@ pub(super) fn assert_same_as_all(prepared: &Prepared<'_>, rays: &[Query], depart
         assert!(found.id[rays.len()..].iter().all(|&id| id == FILLED || id == NOTHING), "it hit something");
         in_packets += found.counts.in_packets;
 
-        let found = width.run(Walk { hierarchy, rays, departing, any: true });
+        let found = width.run(Walk { hierarchy, rays, departing, any: true, by });
         for (row, ray) in rays.iter().enumerate() {
             let (t, expected) = (found.t[row], occluded[row]);
             assert!(
                 t.to_bits() == expected.to_bits(),
-                "{width:?}, row {row} of {}: left at {t:e}, not {expected:e}, by {ray:?}",
+                "{width:?}, by {by:?}, row {row} of {}: left at {t:e}, not {expected:e}, by {ray:?}",
                 rays.len(),
             );
         }

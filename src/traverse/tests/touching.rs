@@ -2,7 +2,7 @@
 
 use super::Random;
 use super::brute_force::Query;
-use super::rays::Walk;
+use super::rays::{By, Walk};
 use super::scenes::scene_of;
 use crate::kernel::tests::sight::Sight;
 use crate::kernel::tests::single;
@@ -32,7 +32,8 @@ fn ids(scene: &Scene, rays: &[Query]) -> Vec<u32> {
         starting(ray, (ray.sight.o() + low) * factor)
     };
     let rays: Vec<Query> = rays.iter().map(scaled).collect();
-    let walk = Walk { hierarchy: &prepared.hierarchy, rays: &rays, departing: true, any: false };
+    let walk =
+        Walk { hierarchy: &prepared.hierarchy, rays: &rays, departing: true, any: false, by: By::Rows };
     Width::BEST.run(walk).id[..rays.len()].to_vec()
 }
 

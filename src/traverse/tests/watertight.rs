@@ -5,7 +5,7 @@
 
 use super::Random;
 use super::brute_force::Query;
-use super::rays::{Walk, assert_same_as_all};
+use super::rays::{By, Walk, assert_same_as_all};
 use super::scenes::scene_of;
 use crate::kernel::tests::sight::Sight;
 use crate::lanes::Width;
@@ -144,7 +144,13 @@ fn assert_closed(closed: &Closed, random: &mut Random, count: usize, width: Widt
         (ray.sight.third(), d, steps.to_array().map(f64::to_bits))
     };
     rays.sort_by_key(order);
-    let found = width.run(Walk { hierarchy: &prepared.hierarchy, rays: &rays, departing: false, any: false });
+    let found = width.run(Walk {
+        hierarchy: &prepared.hierarchy,
+        rays: &rays,
+        departing: false,
+        any: false,
+        by: By::Rows,
+    });
     let leaks: Vec<&Query> =
         rays.iter().zip(&found.id).filter(|(_, id)| **id == NOTHING).map(|(ray, _)| ray).collect();
     assert!(leaks.is_empty(), "{} of {count} rays leak at {pose:?}, one of them {:?}", leaks.len(), leaks[0]);

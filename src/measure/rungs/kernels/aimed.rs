@@ -129,7 +129,7 @@ impl Mesh {
         };
         let set = RaySet { rows: targets.iter().map(row).collect(), ..RaySet::default() };
         let columns = RayColumns::new(prepared, &set);
-        let rays = columns.rays(&(0..columns.filled()));
+        let rays = columns.rays();
         for (row, target) in targets.iter().enumerate() {
             let Some(stretch) = set.stretch(row) else { continue };
             if self.surrounds(target, stretch.origin, stretch.direction) {

@@ -48,7 +48,7 @@ impl BoxesMet {
         let rows: Vec<usize> =
             (0..kept).flat_map(|index| (0..RUN).map(move |row| index * runs / kept * RUN + row)).collect();
         let walk = |rows: &[usize]| {
-            let all = columns.rays(&(0..columns.filled()));
+            let all = columns.rays();
             let mut found = Found::default();
             for &row in rows.iter().filter(|&&row| ends[row] >= 0.0) {
                 let ray = Ray::new(&prepared.hierarchy, &SingleRay::new(&prepared.hierarchy, &all, row));

@@ -180,7 +180,7 @@ impl Walk<'_> {
     }
 
     fn visit(&self, rows: Range<usize>, mut visit: impl FnMut(Pair)) {
-        let all = self.columns.rays(&(0..self.columns.filled()));
+        let all = self.columns.rays();
         for row in rows.filter(|&row| self.ends[row] >= 0.0) {
             let ray = SingleRay::new(self.hierarchy, &all, row);
             let own = left(&all, row);
