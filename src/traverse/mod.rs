@@ -243,9 +243,6 @@ impl Walker {
         aside: &mut Incoming,
         counts: &mut Counts,
     ) {
-        if hierarchy.nodes.is_empty() {
-            return;
-        }
         self.packets.begin();
         for first in (0..rays.count).step_by(RUN) {
             let run = (first, (rays.count - first).min(RUN));

@@ -47,6 +47,13 @@ impl Incoming {
         self.rays.len()
     }
 
+    /// Takes in all rows.
+    pub(super) fn push_all<F: Single, const DEPARTING: bool>(&mut self, rays: &Rays<'_>, t: &[f32]) {
+        for first in (0..rays.count).step_by(RUN) {
+            self.push_run::<F, DEPARTING>(rays, t, (first, (rays.count - first).min(RUN)));
+        }
+    }
+
     /// Takes in a run of [`RUN`] rows, `count` of which are rays, with where they end.
     pub(super) fn push_run<F: Single, const DEPARTING: bool>(
         &mut self,

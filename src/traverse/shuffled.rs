@@ -5,6 +5,7 @@
 //! others by the cells of their origins. A part is what all shares have in some cells; a walker traces it. What it finds goes back to
 //! the shares, and from each to its own rows.
 
+use super::coherence::common_order;
 use super::regroup::{Incoming, WINDOW};
 use super::{Counts, Ends, NOTHING, RUN, Rays, Walkers};
 use crate::lanes::{Lanes, Record, Single};
@@ -62,6 +63,11 @@ impl Shuffled {
         ends: &mut Ends<'_>,
         walkers: &Walkers,
     ) -> Counts {
+        if hierarchy.nodes.is_empty() {
+            ends.t.copy_from_slice(t);
+            ends.id.fill(NOTHING);
+            return Counts::default();
+        }
         if rays.departure.is_empty() {
             self.walk::<F, false, ANY>(hierarchy, (rays, t), ends, walkers)
         } else {
@@ -81,21 +87,22 @@ impl Shuffled {
         self.shares.resize_with(rays.count.div_ceil(rows), Share::default);
         let own =
             Self::of_shares::<ANY>(ends, rows).zip(t.par_chunks(rows)).zip(&mut self.shares).enumerate();
+        let some_are_alike = are_some_alike(rays);
         let in_packets = own.map(|(number, ((mut ends, t), share))| {
-            ends.t.copy_from_slice(t);
-            ends.id.fill(NOTHING);
             let rays = rays.rows(number * rows..number * rows + t.len());
             let mut counts = Counts::default();
             share.incoming.clear();
-            walkers.lend(|walker| {
-                walker.packets::<F, DEPARTING, ANY>(
-                    hierarchy,
-                    &rays,
-                    &mut ends,
-                    &mut share.incoming,
-                    &mut counts,
-                );
-            });
+            if some_are_alike {
+                ends.t.copy_from_slice(t);
+                ends.id.fill(NOTHING);
+                let aside = &mut share.incoming;
+                walkers.lend(|walker| {
+                    walker.packets::<F, DEPARTING, ANY>(hierarchy, &rays, &mut ends, aside, &mut counts);
+                });
+            } else {
+                share.incoming.push_all::<F, DEPARTING>(&rays, t);
+                ends.t[rays.count..].copy_from_slice(&t[rays.count..]);
+            }
             counts
         });
         let mut counts = in_packets.reduce(Counts::default, Counts::add);
@@ -228,10 +235,14 @@ fn bounds_of(rays: &[Record]) -> Bounds {
     rays.iter().fold(NO_BOUNDS, |bounds, Record([x, y, z, ..])| union(bounds, [[*x, *y, *z]; 2]))
 }
 
+/// Along the axis in which they reach farthest.
+fn extent([low, high]: Bounds) -> f32 {
+    (0..3).fold(0.0, |extent, axis| Lanes::max(high[axis] - low[axis], extent))
+}
+
 impl Grid {
     fn new([low, high]: Bounds) -> Self {
-        let extent =
-            (0..3).fold(f32::MIN_POSITIVE, |extent, axis| Lanes::max(high[axis] - low[axis], extent));
+        let extent = Lanes::max(extent([low, high]), f32::MIN_POSITIVE);
         Self { low, cells_per_length: Lanes::min((1_u32 << CELL_BITS) as f32 / extent, f32::MAX) }
     }
 
@@ -258,29 +269,37 @@ fn spread_by_3(word: u32) -> u32 {
     (word | word << 2) & 0x0924_9249
 }
 
+/// Some runs of rays, evenly spread.
+fn sampled_runs(count: usize) -> impl Iterator<Item = Range<usize>> {
+    let runs = count / RUN;
+    (0..SAMPLED.min(runs)).map(move |sample| {
+        let first = sample * runs / SAMPLED.min(runs) * RUN;
+        first..first + RUN
+    })
+}
+
+const SAMPLED: usize = 32;
+
 /// Whether rays that follow each other start near each other, by some runs of them.
 pub(crate) fn is_local(origin: [&[f32]; 3], count: usize) -> bool {
-    const SAMPLED: usize = 32;
     /// Share of the whole that the runs of rays in an order cover at most.
     const NEAR: f32 = 0.25;
-    let runs = count / RUN;
-    if runs < SAMPLED {
+    if count / RUN < SAMPLED {
         return true;
     }
     let extent_of = |rows: &mut dyn Iterator<Item = usize>| {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for row in rows {
-            for axis in 0..3 {
-                low[axis] = Lanes::min(origin[axis][row], low[axis]);
-                high[axis] = Lanes::max(origin[axis][row], high[axis]);
-            }
-        }
-        (0..3).fold(0.0, |extent, axis| Lanes::max(high[axis] - low[axis], extent))
+        let bounds = rows.map(|row| [origin.map(|column| column[row]); 2]).fold(NO_BOUNDS, union);
+        extent(bounds)
     };
-    let sampled = || (0..SAMPLED).map(|sample| sample * runs / SAMPLED * RUN);
-    let of_runs: f32 = sampled().map(|first| extent_of(&mut (first..first + RUN))).sum();
-    let of_all = extent_of(&mut sampled().flat_map(|first| first..first + RUN));
+    let of_runs: f32 = sampled_runs(count).map(|mut run| extent_of(&mut run)).sum();
+    let of_all = extent_of(&mut sampled_runs(count).flatten());
     of_runs <= NEAR * SAMPLED as f32 * of_all
+}
+
+/// Whether some runs of rays may walk in packets, by those that are looked at.
+fn are_some_alike(rays: &Rays<'_>) -> bool {
+    sampled_runs(rays.count)
+        .any(|run| common_order::<f32>(rays.direction.map(|column| &column[run.clone()])).is_some())
 }
 
 #[cfg(test)]
