@@ -4,7 +4,7 @@
 //! - `exact`: which of two hits is the nearer, where f32 cannot tell
 //! - `in_plane`: faces whose plane a ray starts in, for `exact`
 //! - `packet`: 64 rays at a time that are much alike, their lanes across rays
-//! - `stream`: up to 1024 rays that go roughly the same way; at each node a list says who of them meets it
+//! - `stream`: up to 4096 rays that go roughly the same way; at each node a list says who of them meets it
 //! - `single`: one ray, its lanes across the children of a node and the primitives of a block; what few rays of a stream are
 //!   left to
 //! - `leaf`: what is in a leaf against rays in lanes, for packets and streams

@@ -25,8 +25,9 @@ use loners::Loners;
 pub(super) use rays::Class;
 use rays::StreamRays;
 
-/// Most rays of a stream; a power of two.
-pub(super) const CAPACITY: usize = 1024;
+/// Most rays of a stream; a power of two. With 2048 diffuse and mirror rays were 1.04 times as fast as with 1024, with 4096 1.06, and
+/// on two threads 1.09 (2026-11): the lists that meet a node are longer.
+pub(super) const CAPACITY: usize = 4096;
 
 /// Rays of lists no longer than this go on alone, in lanes across boxes and primitives.
 const FEW: usize = 3;
