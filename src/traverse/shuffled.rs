@@ -84,11 +84,30 @@ impl Shuffled {
     ) -> Counts {
         let threads = rayon::current_num_threads();
         let rows = rays.count.div_ceil(threads).next_multiple_of(RUN);
-        self.shares.resize_with(rays.count.div_ceil(rows), Share::default);
-        let own =
-            Self::of_shares::<ANY>(ends, rows).zip(t.par_chunks(rows)).zip(&mut self.shares).enumerate();
+        let in_packets = self.take_in::<F, DEPARTING, ANY>(hierarchy, (rays, t), (ends, rows), walkers);
+        self.sort();
+        // Of parts a third as large some threads were done sooner, and walks slower by more: 0.96 of the speed, 2026-11.
+        let count = self.shares.iter().map(|share| share.order.len()).sum::<usize>();
+        self.cut(count, threads * count.div_ceil(threads * WINDOW));
+        let in_streams = self.trace_parts::<F, DEPARTING, ANY>(hierarchy, walkers);
+        Self::of_shares::<ANY>(ends, rows)
+            .enumerate()
+            .for_each(|(number, mut ends)| self.give_back::<ANY>(number, &mut ends));
+        in_packets + in_streams
+    }
+
+    /// Each share takes its rows, so many. Where some rays are alike, these walk at once.
+    fn take_in<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        (rays, t): (&Rays<'_>, &[f32]),
+        (ends, rows): (&mut Ends<'_>, usize),
+        walkers: &Walkers,
+    ) -> Counts {
         let some_are_alike = are_some_alike(rays);
-        let in_packets = own.map(|(number, ((mut ends, t), share))| {
+        self.shares.resize_with(rays.count.div_ceil(rows), Share::default);
+        let own = Self::of_shares::<ANY>(ends, rows).zip(t.par_chunks(rows)).zip(&mut self.shares);
+        let counts = own.enumerate().map(|(number, ((mut ends, t), share))| {
             let rays = rays.rows(number * rows..number * rows + t.len());
             let mut counts = Counts::default();
             share.incoming.clear();
@@ -105,29 +124,27 @@ impl Shuffled {
             }
             counts
         });
-        let mut counts = in_packets.reduce(Counts::default, Counts::add);
-        self.sort();
-        let count = self.shares.iter().map(|share| share.order.len()).sum::<usize>();
-        // Of parts a third as large some threads were done sooner, and walks slower by more: 0.96 of the speed, 2026-11.
-        self.cut(count, threads * count.div_ceil(threads * WINDOW));
+        counts.reduce(Counts::default, Counts::add)
+    }
+
+    fn trace_parts<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        walkers: &Walkers,
+    ) -> Counts {
         let shares = &self.shares;
-        let in_streams = self.parts.par_iter_mut().with_max_len(1).map(|part| {
-            let mut counts = Counts::default();
-            let Part { of_shares, t, id } = part;
+        let counts = self.parts.par_iter_mut().with_max_len(1).map(|Part { of_shares, t, id }| {
             let count = of_shares.iter().map(Range::len).sum();
             t.resize(count, 0.0);
             id.resize(if ANY { 0 } else { count }, NOTHING);
+            let mut counts = Counts::default();
             walkers.lend(|walker| {
                 let take_in = |incoming: &mut Incoming| merge::<DEPARTING>(shares, of_shares, incoming);
                 walker.streams::<F, DEPARTING, ANY>(hierarchy, take_in, &mut Ends { t, id }, &mut counts);
             });
             counts
         });
-        counts += in_streams.reduce(Counts::default, Counts::add);
-        Self::of_shares::<ANY>(ends, rows)
-            .enumerate()
-            .for_each(|(number, mut ends)| self.give_back::<ANY>(number, &mut ends));
-        counts
+        counts.reduce(Counts::default, Counts::add)
     }
 
     /// Each share's own ends.
