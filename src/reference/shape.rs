@@ -329,9 +329,12 @@ fn exact_beside_start(ray: &Ray, vertices: &[DVec3], (normal, rounding): (DVec3,
 /// The corner that a face's plane goes through. Of three any will do, and the nearest to where the ray starts is at height 0 if it
 /// starts there; more may not be quite in a plane, and then it is the first.
 fn point_of_plane(ray: &Ray, vertices: &[DVec3]) -> DVec3 {
-    let distance = |vertex: &DVec3| vertex.distance_squared(ray.origin);
-    let nearest = vertices.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    nearest.filter(|_| vertices.len() == 3).unwrap_or(vertices[0])
+    let distance = |vertex: DVec3| vertex.distance_squared(ray.origin);
+    let nearer = |one, other| if distance(other) < distance(one) { other } else { one };
+    match *vertices {
+        [a, b, c] => nearer(nearer(a, b), c),
+        _ => vertices[0],
+    }
 }
 
 /// Whether an edge crosses the half-line from the ray's foot along x. Half open: a vertex level with the foot counts as above

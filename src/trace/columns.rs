@@ -139,8 +139,8 @@ impl RayColumns {
     }
 
     /// Where hits end to be of interest.
-    pub(super) fn t_max(&self, rows: &Range<usize>) -> &[f32] {
-        &self.t_max[rows.clone()]
+    pub(super) fn t_max(&self) -> &[f32] {
+        &self.t_max
     }
 
     /// Sets ends to what rays have before they are traced.

@@ -22,9 +22,6 @@ pub struct Run<'a> {
     shuffled: Shuffled,
 }
 
-/// Rays in no order that are sorted at a time, which takes 48 bytes a ray.
-const MOST_SORTED: usize = 1 << 22;
-
 impl<'a> Run<'a> {
     /// Makes room for what will be hit.
     #[must_use]
@@ -176,22 +173,12 @@ impl Pass<'_> {
     fn in_no_order<F: Single>(self) -> Counts {
         let Self { prepared, columns, query, ends, walkers, shuffled } = self;
         let hierarchy = &prepared.hierarchy;
-        let mut counts = Counts::default();
-        for first in (0..columns.filled()).step_by(MOST_SORTED) {
-            let rows = first..columns.filled().min(first + MOST_SORTED);
-            let rays = (&columns.rays().rows(rows.clone()), columns.t_max(&rows));
-            let t = &mut ends.t[rows.clone()];
-            counts += match query {
-                Query::Closest => {
-                    let mut ends = Ends { t, id: &mut ends.id[rows] };
-                    shuffled.trace::<F, false>(hierarchy, rays, &mut ends, walkers)
-                }
-                Query::Any => {
-                    let mut ends = Ends { t, id: &mut [] };
-                    shuffled.trace::<F, true>(hierarchy, rays, &mut ends, walkers)
-                }
-            };
+        let rays = (&columns.rays(), columns.t_max());
+        let EndColumns { t, id } = ends;
+        let mut ends = Ends { t, id };
+        match query {
+            Query::Closest => shuffled.trace::<F, false>(hierarchy, rays, &mut ends, walkers),
+            Query::Any => shuffled.trace::<F, true>(hierarchy, rays, &mut ends, walkers),
         }
-        counts
     }
 }

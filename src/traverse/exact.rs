@@ -170,7 +170,8 @@ const LEAST_COSINE: f64 = 1.0 / (1 << 12) as f64;
 /// them, and f64 rounds some tens of times by 2⁻⁵³.
 const TOUCHING: f64 = 1.0 / (1_u64 << 45) as f64;
 
-/// How far f32 may take a face to be from where it is, in roundings of its farthest corner's distance.
+/// How far f32 may take a face to be from where it is, in roundings of its farthest corner's distance: half of what still counts as
+/// rounding (`certified::BAND`).
 const OFF_PLANE: f64 = 4.0;
 
 impl Line {
@@ -202,7 +203,8 @@ impl Line {
             Part::StartsOn if outline.is_foot_inside() => self.beyond_t_min(t),
             Part::StartsOn | Part::Passed => None,
             Part::Met(edge_t) => {
-                // No later than the plane, as well as f32 tells where that is; seen edge-on it may be anywhere.
+                // No later than the plane, as well as f32 tells where that is: seen edge-on, anywhere. A plane that even so is
+                // passed, as of a bent polygon, says nothing.
                 let reach = extent_of(corners.iter().map(|&corner| corner - self.origin));
                 let rounding = OFF_PLANE * f64::from(UNIT_ROUNDOFF) * reach;
                 let latest = t + rounding / (cosine * self.direction.length());
@@ -372,9 +374,12 @@ impl Line {
     /// The corner that a face's plane goes through. Of three any will do, and the nearest to where the ray starts is at height 0 if it
     /// starts there; more may not be quite in a plane, and then it is the first.
     fn point_of_plane(&self, corners: &[DVec3]) -> DVec3 {
-        let distance = |corner: &DVec3| corner.distance_squared(self.origin);
-        let nearest = corners.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.filter(|_| corners.len() == 3).unwrap_or(corners[0])
+        let distance = |corner: DVec3| corner.distance_squared(self.origin);
+        let nearer = |one, other| if distance(other) < distance(one) { other } else { one };
+        match *corners {
+            [a, b, c] => nearer(nearer(a, b), c),
+            _ => corners[0],
+        }
     }
 }
 

@@ -65,6 +65,12 @@ pub(crate) struct Rays<'a> {
 }
 
 impl<'a> Rays<'a> {
+    /// The first row of each run of [`RUN`] rows, and how many of them are rays.
+    fn runs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let count = self.count;
+        (0..count).step_by(RUN).map(move |first| (first, (count - first).min(RUN)))
+    }
+
     /// Those of some whole runs of rows.
     pub(crate) fn rows(&self, rows: Range<usize>) -> Rays<'a> {
         fn of<'a, T>(rows: &Range<usize>, column: &'a [T]) -> &'a [T] {
@@ -222,8 +228,7 @@ impl Walker {
         }
         self.incoming.clear();
         self.packets.begin();
-        for first in (0..rays.count).step_by(RUN) {
-            let run = (first, (rays.count - first).min(RUN));
+        for run in rays.runs() {
             if !self.packets.walk::<F, DEPARTING, ANY>(hierarchy, rays, ends, run, counts) {
                 self.incoming.push_run::<F, DEPARTING>(rays, ends.t, run);
                 if self.incoming.len() >= WINDOW {
@@ -244,8 +249,7 @@ impl Walker {
         counts: &mut Counts,
     ) {
         self.packets.begin();
-        for first in (0..rays.count).step_by(RUN) {
-            let run = (first, (rays.count - first).min(RUN));
+        for run in rays.runs() {
             if !self.packets.walk::<F, DEPARTING, ANY>(hierarchy, rays, ends, run, counts) {
                 aside.push_run::<F, DEPARTING>(rays, ends.t, run);
             }

@@ -49,8 +49,8 @@ impl Incoming {
 
     /// Takes in all rows.
     pub(super) fn push_all<F: Single, const DEPARTING: bool>(&mut self, rays: &Rays<'_>, t: &[f32]) {
-        for first in (0..rays.count).step_by(RUN) {
-            self.push_run::<F, DEPARTING>(rays, t, (first, (rays.count - first).min(RUN)));
+        for run in rays.runs() {
+            self.push_run::<F, DEPARTING>(rays, t, run);
         }
     }
 
@@ -226,18 +226,16 @@ mod tests {
         incoming.rays.extend((0..count).map(|row| Record(std::array::from_fn(|column| number(row, column)))));
         incoming.classes.extend(incoming.rays.iter().map(class_number));
         incoming.rows.extend((0..count).map(word));
-        {
-            let mut seen = vec![0; count];
-            incoming.each_part(|incoming, places, class| {
-                assert!(!places.is_empty() && places.len() <= CAPACITY);
-                for &place in places {
-                    seen[place as usize] += 1;
-                    let [.., x, y, z, _] = incoming.rays[place as usize].0;
-                    assert_eq!(class.backwards, [x, y, z].map(|component| component < 0.0));
-                    assert_eq!(class.third, axes_along([x, y, z])[2]);
-                }
-            });
-            assert!(seen.iter().all(|&times| times == 1));
-        }
+        let mut seen = vec![0; count];
+        incoming.each_part(|incoming, places, class| {
+            assert!(!places.is_empty() && places.len() <= CAPACITY);
+            for &place in places {
+                seen[place as usize] += 1;
+                let [.., x, y, z, _] = incoming.rays[place as usize].0;
+                assert_eq!(class.backwards, [x, y, z].map(|component| component < 0.0));
+                assert_eq!(class.third, axes_along([x, y, z])[2]);
+            }
+        });
+        assert!(seen.iter().all(|&times| times == 1));
     }
 }

@@ -205,8 +205,8 @@ impl Shuffled {
     fn give_back<const ANY: bool>(&self, number: usize, ends: &mut Ends<'_>) {
         let rows = &self.shares[number].incoming.rows;
         for part in &self.parts {
-            let first: usize = part.of_shares[..number].iter().map(Range::len).sum();
-            for (at, &row) in (first..).zip(&rows[part.of_shares[number].clone()]) {
+            for (at, &row) in (first_of(&part.of_shares, number)..).zip(&rows[part.of_shares[number].clone()])
+            {
                 ends.t[row as usize] = part.t[at];
                 if !ANY {
                     ends.id[row as usize] = part.id[at];
@@ -216,22 +216,23 @@ impl Shuffled {
     }
 }
 
+/// Where the rays of a share begin in a part.
+fn first_of(of_shares: &[Range<usize>], number: usize) -> usize {
+    of_shares[..number].iter().map(Range::len).sum()
+}
+
 /// Takes rays of some cells from all shares, cell by cell. Their rows count share after share.
 fn merge<const DEPARTING: bool>(shares: &[Share], of_shares: &[Range<usize>], incoming: &mut Incoming) {
     let mut rest = of_shares.to_vec();
-    let first_rows: Vec<usize> =
-        of_shares.iter().scan(0, |row, range| Some(std::mem::replace(row, *row + range.len()))).collect();
     let cell_of = |share: &Share, at: usize| share.order[at].0;
     loop {
         let next = shares.iter().zip(&rest).filter(|(_, rest)| !rest.is_empty());
         let Some(cell) = next.map(|(share, rest)| cell_of(share, rest.start)).min() else { return };
-        let is_alone = rest.iter().filter(|rest| !rest.is_empty()).count() == 1;
         for (number, share) in shares.iter().enumerate() {
             let Range { start, end } = rest[number];
-            let in_cell = (start..end).take_while(|&at| is_alone || cell_of(share, at) == cell).count();
-            let row = first_rows[number] + start - of_shares[number].start;
-            let range = start..start + in_cell;
-            incoming.take_over::<DEPARTING>(&share.incoming, range, row);
+            let in_cell = (start..end).take_while(|&at| cell_of(share, at) == cell).count();
+            let row = first_of(of_shares, number) + start - of_shares[number].start;
+            incoming.take_over::<DEPARTING>(&share.incoming, start..start + in_cell, row);
             rest[number].start += in_cell;
         }
     }
@@ -286,6 +287,9 @@ fn spread_by_3(word: u32) -> u32 {
     (word | word << 2) & 0x0924_9249
 }
 
+/// Runs that are looked at.
+const SAMPLED: usize = 32;
+
 /// Some runs of rays, evenly spread.
 fn sampled_runs(count: usize) -> impl Iterator<Item = Range<usize>> {
     let runs = count / RUN;
@@ -294,8 +298,6 @@ fn sampled_runs(count: usize) -> impl Iterator<Item = Range<usize>> {
         first..first + RUN
     })
 }
-
-const SAMPLED: usize = 32;
 
 /// Whether rays that follow each other start near each other, by some runs of them.
 pub(crate) fn is_local(origin: [&[f32]; 3], count: usize) -> bool {
