@@ -278,3 +278,31 @@ proptest! {
         }
     }
 }
+
+/// Rays that start in the plane of a triangle, beside the middle of an edge by less than f32 can tell, and one that lies in a plane and
+/// is aimed at the middle of an edge: found at random, once in some ten thousand cases.
+#[test]
+fn rays_that_start_in_a_plane_meet_it_within_rounding() {
+    let edge_on = [[-1.5, 0.75, 0.0], [-1.0, 1.5, -0.25], [1.0, -0.75, 0.5]];
+    let beside = [[-0.000_986_554_7, -1.0, 0.0], [0.001_797_568_4, -1.5, 0.25], [1.0, 1.25, -1.0]];
+    let turned = |[x, y, z]: [f32; 3]| [-y, z, x];
+    let along_z = [0.499_506_7, 0.125, -0.5];
+    for (corners, origin, direction) in [
+        (edge_on, [-0.000_188_313_79, 0.0, 0.25], [-1.249_811_6, 1.125, -0.375]),
+        (beside, along_z, [0.0, 0.0, 1.0]),
+        (beside.map(turned), turned(along_z), [0.0, 1.0, 0.0]),
+    ] {
+        let scene = scene_of(&[Shape::Triangle(corners.map(Vec3::from))]);
+        let ([x, y, z], [dx, dy, dz]) = (origin, direction);
+        let rays = ray_set(&[[x, y, z, 0.0, dx, dy, dz, f32::INFINITY]]);
+        let judge = Judge::new(&scene);
+        for (engine, hits) in answers(&scene, &rays, Query::Closest).iter().enumerate() {
+            let judgement = judged(&judge, &rays, 0, hits);
+            assert!(
+                judgement.verdict != Verdict::Wrong,
+                "engine {engine}, t = {:e}: {judgement:?}",
+                hits.t[0]
+            );
+        }
+    }
+}

@@ -190,13 +190,13 @@ fn a_wrong_answer_is_as_far_from_right_as_the_edge_is() {
 #[test]
 fn an_answer_that_is_wrong_by_nothing_that_f64_can_see_is_not_right() {
     let corners =
-        [[-0.399_910_54, 0.236_049_56, -1.5], [-1.0, -1.0, 1.0], [-0.001_183_343_2, 0.25, 3.034_815_2e-5]];
+        [[3.034_815_2e-5, -0.001_183_343_2, 0.25], [-1.5, -0.399_910_54, 0.236_049_56], [1.0, -1.0, -1.0]];
     let mut geometry = Geometry::default();
     let first = geometry.add_vertices(corners.map(Vec3::from)).unwrap();
     geometry.add_triangle([first, first + 1, first + 2], None, OPAQUE).unwrap();
     let judge = judge(geometry);
-    let origin = Vec3::from(corners[0]).as_dvec3();
-    let stretch = Stretch { origin, direction: DVec3::Z, ..down(0.0, 0.0) };
+    let origin = Vec3::from(corners[1]).as_dvec3();
+    let stretch = Stretch { origin, direction: DVec3::X, ..down(0.0, 0.0) };
     assert_eq!(judge.closest(&stretch).only(), Some(None));
     assert_eq!(judge.judge_closest(&stretch, MISS).verdict, Verdict::Right);
     let judged = judge.judge_closest(&stretch, hit(0, 6e-17));
