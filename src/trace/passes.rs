@@ -158,7 +158,8 @@ impl Pass<'_> {
             });
             counts
         };
-        let ts = ends.t.par_chunks_mut(batch).enumerate();
+        // Batches differ in cost: without this, half of them would be one task, and no thread could take another's.
+        let ts = ends.t.par_chunks_mut(batch).with_max_len(1).enumerate();
         match query {
             Query::Closest => ts
                 .zip(ends.id.par_chunks_mut(batch))
