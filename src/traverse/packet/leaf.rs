@@ -21,7 +21,7 @@ impl Packet {
         hierarchy: &Hierarchy,
         leaf: Place,
         (node, slot): (&Node, u8),
-        (first_group, mask): (u8, F::Mask),
+        (first_group, bits): (u8, u32),
         counts: &mut Counts,
     ) {
         let in_sight = match (leaf, &self.sight) {
@@ -34,13 +34,13 @@ impl Packet {
             return;
         }
         if let (true, Place::Triangles(index)) = (ANY, leaf) {
-            let rows = self.entering::<F>((node, slot), (first_group, mask), counts);
+            let rows = self.entering::<F>((node, slot), (first_group, bits), counts);
             self.visit_rows::<F, DEPARTING>(hierarchy, (index, in_sight), rows, counts);
             return;
         }
         let leaf = (leaf, in_sight);
         let mut group = first_group;
-        let mut mask = mask;
+        let mut mask = F::of_bits(bits);
         loop {
             let row = group as usize * F::WIDTH;
             self.visit_group::<F, DEPARTING, ANY>(hierarchy, leaf, (row, mask), counts);
@@ -109,10 +109,10 @@ impl Packet {
     fn entering<F: Single>(
         &self,
         (node, slot): (&Node, u8),
-        (first_group, mask): (u8, F::Mask),
+        (first_group, bits): (u8, u32),
         counts: &mut Counts,
     ) -> Rows {
-        let mut rows = Rows::from(mask.bits()) << (first_group as usize * F::WIDTH);
+        let mut rows = Rows::from(bits) << (first_group as usize * F::WIDTH);
         #[expect(clippy::cast_possible_truncation, reason = "at most 64 groups")]
         for group in first_group + 1..(PACKET / F::WIDTH) as u8 {
             let bits = self.group_enters::<F>(node, slot, group, counts).bits();

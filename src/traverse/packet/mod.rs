@@ -289,7 +289,7 @@ impl Packet {
             }
             let node = &hierarchy.nodes[parent as usize];
             let child = node.children[slot as usize];
-            let Some((group, mask)) = self.first_group_in::<F>(node, slot, first_group, counts) else {
+            let Some((group, bits)) = self.first_group_in::<F>(node, slot, first_group, counts) else {
                 continue;
             };
             match Hierarchy::place(child) {
@@ -302,7 +302,7 @@ impl Packet {
                         hierarchy,
                         leaf,
                         (node, slot),
-                        (group, mask),
+                        (group, bits),
                         counts,
                     );
                     if std::mem::take(&mut self.is_changed) {
@@ -387,12 +387,12 @@ impl Packet {
         slot: u8,
         from: u8,
         counts: &mut Counts,
-    ) -> Option<(u8, F::Mask)> {
+    ) -> Option<(u8, u32)> {
         #[expect(clippy::cast_possible_truncation, reason = "at most 64 groups")]
         let groups = (PACKET / F::WIDTH) as u8;
         (from..groups).find_map(|group| {
-            let mask = self.group_enters::<F>(node, slot, group, counts);
-            mask.any().then_some((group, mask))
+            let bits = self.group_enters::<F>(node, slot, group, counts).bits();
+            (bits != 0).then_some((group, bits))
         })
     }
 
