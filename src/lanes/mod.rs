@@ -131,6 +131,13 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
     /// A mask's halves, of lanes that are half as many: what they choose may be less work in such. None where a node's are no
     /// fewer than these.
     fn halves(mask: Self::Mask) -> Option<[<Self::Node as Lanes>::Mask; 2]>;
+    /// A block's lanes again and again, as often as they go into these.
+    fn repeated(block: Self::Block) -> Self;
+    /// The reverse: each number in as many lanes as a block has, the first in the first of them. Of the numbers beyond the last
+    /// that fits nothing is read.
+    fn spread(numbers: &[f32; SPREAD]) -> Self;
+    /// Likewise of halves of records: lanes for each of their numbers.
+    fn spread_halves<'a>(half: impl Fn(usize) -> &'a [f32; RECORD / 2]) -> [Self; RECORD / 2];
     /// The bits of each lane, which held an id or what else has 32 bits.
     fn bits_as_ids(self) -> Self::Ids;
     /// Turns a record for each lane into lanes for each of its numbers.
@@ -139,6 +146,8 @@ pub(crate) trait Single: Lanes<Scalar = f32> {
     fn store_records(numbers: [Self; RECORD], to: &mut [Record]);
 }
 
+/// Most numbers that are spread over lanes at once.
+pub(crate) const SPREAD: usize = 4;
 /// Numbers of a [`Record`].
 pub(crate) const RECORD: usize = 8;
 /// Numbers that lie side by side, and never across two lines of memory: half of them would where they lie as an allocator happens
@@ -146,6 +155,14 @@ pub(crate) const RECORD: usize = 8;
 #[repr(C, align(32))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct Record(pub(crate) [f32; RECORD]);
+
+impl Record {
+    /// Its first numbers and its last.
+    #[inline(always)]
+    pub(crate) fn halves(&self) -> &[[f32; RECORD / 2]; 2] {
+        bytemuck::cast_ref(&self.0)
+    }
+}
 
 /// f64 lanes: what follows a hit is computed in them, and rounded to f32 where it enters a queue.
 pub(crate) trait Double: Lanes<Scalar = f64> {

@@ -108,7 +108,7 @@ pub(crate) fn least_of_each<F: Single>(lanes: [F; RECORD]) -> [f32; RECORD] {
 
 #[cfg(test)]
 mod tests {
-    use crate::lanes::{Job, Record, Single, Width};
+    use crate::lanes::{Job, Lanes, Record, SPREAD, Single, Width};
 
     struct ThereAndBack;
 
@@ -140,6 +140,51 @@ mod tests {
                     F::WIDTH
                 );
             }
+        }
+    }
+
+    struct Spreads;
+
+    impl Job for Spreads {
+        type Output = ();
+
+        fn run<F: Single>(self) {
+            // Bits of any kind, as above.
+            let mut bits = (0x7F7F_FFF0..).map(f32::from_bits);
+            let records: Vec<Record> =
+                (0..4).map(|_| Record(std::array::from_fn(|_| bits.next().unwrap_or(0.0)))).collect();
+            let words = |lanes: F| {
+                let mut words = [0; 16];
+                F::store_ids(lanes.bits_as_ids(), &mut words);
+                words
+            };
+            let numbers: [f32; SPREAD] = std::array::from_fn(|number| records[number].0[0]);
+            let (spread, repeated) =
+                (words(F::spread(&numbers)), words(F::repeated(F::Block::load(&numbers))));
+            for half in 0..2 {
+                let halves = F::spread_halves(|row| &records[row].halves()[half]);
+                for (number, lanes) in halves.into_iter().enumerate() {
+                    for (lane, word) in words(lanes)[..F::WIDTH].iter().enumerate() {
+                        let record = &records[lane / F::Block::WIDTH];
+                        assert_eq!(
+                            *word,
+                            record.0[half * 4 + number].to_bits(),
+                            "{number} of {half}, lane {lane}"
+                        );
+                    }
+                }
+            }
+            for lane in 0..F::WIDTH {
+                assert_eq!(spread[lane], numbers[lane / F::Block::WIDTH].to_bits(), "lane {lane}");
+                assert_eq!(repeated[lane], numbers[lane % F::Block::WIDTH].to_bits(), "lane {lane}");
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_fill_as_many_lanes_as_a_block_has() {
+        for width in Width::ALL {
+            width.run(Spreads);
         }
     }
 

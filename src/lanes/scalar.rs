@@ -1,6 +1,6 @@
 //! One lane: plain f32 and f64.
 
-use super::{Double, Lanes, Mask, RECORD, Record, Single};
+use super::{Double, Lanes, Mask, RECORD, Record, SPREAD, Single};
 
 impl Mask for bool {
     const NONE: Self = false;
@@ -133,6 +133,21 @@ impl Single for f32 {
     #[inline(always)]
     fn halves(_: bool) -> Option<[bool; 2]> {
         None
+    }
+
+    #[inline(always)]
+    fn repeated(block: f32) -> f32 {
+        block
+    }
+
+    #[inline(always)]
+    fn spread(numbers: &[f32; SPREAD]) -> f32 {
+        numbers[0]
+    }
+
+    #[inline(always)]
+    fn spread_halves<'a>(half: impl Fn(usize) -> &'a [f32; RECORD / 2]) -> [f32; RECORD / 2] {
+        *half(0)
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::pack::Packed;
 use super::records::Records;
 use super::scalar::{MANTISSA, WHOLE};
-use super::{Double, Lanes, Mask, RECORD, Record, Single};
+use super::{Double, Lanes, Mask, RECORD, Record, SPREAD, Single};
 use wide::{f32x4, f32x8, f32x16, f64x2, f64x4, f64x8, i32x4, i32x8, i32x16, u64x2, u64x4, u64x8};
 
 /// A lane's number in its place, for masks of the first lanes.
@@ -182,6 +182,29 @@ macro_rules! many_singles {
             fn halves(mask: Self) -> Option<[$node; 2]> {
                 const HALVES: fn($lanes) -> Option<[$node; 2]> = $halves;
                 HALVES(mask)
+            }
+
+            #[inline(always)]
+            fn repeated(block: f32x4) -> Self {
+                bytemuck::cast([block; $width / 4])
+            }
+
+            #[inline(always)]
+            fn spread(numbers: &[f32; SPREAD]) -> Self {
+                <$lanes>::new(std::array::from_fn(|lane| numbers[lane / 4]))
+            }
+
+            #[inline(always)]
+            fn spread_halves<'a>(half: impl Fn(usize) -> &'a [f32; RECORD / 2]) -> [Self; RECORD / 2] {
+                let halves: [f32x4; $width / 4] = std::array::from_fn(|number| f32x4::new(*half(number)));
+                let all: [f32; $width] = bytemuck::cast(halves);
+                // Written out: a closure over lanes passes them through memory.
+                [
+                    <$lanes>::new(std::array::from_fn(|lane| all[lane / 4 * 4])),
+                    <$lanes>::new(std::array::from_fn(|lane| all[lane / 4 * 4 + 1])),
+                    <$lanes>::new(std::array::from_fn(|lane| all[lane / 4 * 4 + 2])),
+                    <$lanes>::new(std::array::from_fn(|lane| all[lane / 4 * 4 + 3])),
+                ]
             }
 
             #[inline(always)]

@@ -68,6 +68,12 @@ pub(crate) struct PolygonFace {
     pub(crate) source: u32,
 }
 
+/// How many of some lanes of a block hold a primitive.
+#[inline(always)]
+pub(crate) fn count_there(ids: &[u32]) -> usize {
+    ids.iter().map(|&id| usize::from(id != u32::MAX)).sum()
+}
+
 const _: () = assert!(size_of::<TriangleBlock>() == 192 && size_of::<SphereBlock>() == 96);
 const _: () = assert!(size_of::<PolygonFace>() == 52);
 

@@ -103,7 +103,7 @@ fn asked<const ANY: bool>(hierarchy: &Hierarchy, ids: &[u32; BLOCK]) -> impl Ite
 
 /// Tests triangles of a block, those whose bits are set in `in_sight`.
 #[inline(always)]
-pub(super) fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
+fn triangles<F: Single, R: RayLanes<F>, const DEPARTING: bool, const ANY: bool>(
     hierarchy: &Hierarchy,
     (index, in_sight): (usize, u32),
     rays: &mut R,

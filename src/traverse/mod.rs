@@ -8,6 +8,7 @@
 //! - `single`: one ray, its lanes across the children of a node and the primitives of a block; what few rays of a stream are
 //!   left to
 //! - `leaf`: what is in a leaf against rays in lanes, for packets and streams
+//! - `tile`: what is in a leaf against pairs of ray and primitive in lanes, for few rays of a packet or stream and for one alone
 //! - `child`: the box of a child against rays in lanes, likewise
 //! - `edges`: which edges of a polygon rays that lie side by side have to do with
 //! - `sight`: bounds of what several rays see, for `edges` and for triangles that packets miss
@@ -35,6 +36,7 @@ mod stream;
 mod terms;
 #[cfg(test)]
 mod tests;
+mod tile;
 
 pub(crate) use counts::{Counts, LaneUse};
 pub(crate) use shuffled::{Shuffled, is_local};

@@ -1,8 +1,9 @@
 //! One ray at a time: its lanes are the children of a node and the primitives of a block.
 
-use super::candidate::{self, Candidate, Start, View};
+use super::candidate::{self, View};
 use super::exact::{self, Nearest, Spot};
 use super::terms::Terms;
+use super::tile::{self, Origin, TileLines, TileRays};
 use super::{Counts, Rays};
 use crate::kernel::bounds::{self, Slabs};
 use crate::kernel::polygon::Outline;
@@ -10,7 +11,7 @@ use crate::kernel::sphere::Line;
 use crate::kernel::{RaySpace, axes_along, unclear_area};
 use crate::lanes::{Lanes, Mask, Single, Vector};
 use crate::prepare::bvh::{Child, Node, WIDTH};
-use crate::prepare::{BLOCK, Hierarchy, Place};
+use crate::prepare::{Hierarchy, Place};
 
 /// What the tests need of a ray.
 pub(crate) struct Ray {
@@ -118,12 +119,13 @@ impl Ray {
         exact::Line::new([self.origin, self.origin_low, self.direction], self.departure, self.t_min)
     }
 
-    /// Whether the ray starts on primitives of these ids, and then which way it goes.
     #[inline(always)]
-    fn start<F: Single>(&self, ids: F::Ids) -> Start<F> {
-        let own = F::ids_eq(ids, F::splat_ids(self.departure >> 1));
-        let inward = F::first(if self.departure & 1 == 1 { F::WIDTH } else { 0 });
-        Start { own, inward, t_min: F::splat(self.t_min) }
+    fn start<L: Single>(&self) -> Origin<L> {
+        Origin {
+            padding: L::splat(self.padding),
+            t_min: L::splat(self.t_min),
+            departure: L::splat(f32::from_bits(self.departure)),
+        }
     }
 }
 
@@ -146,8 +148,8 @@ impl<'a> Target<'a> {
 impl Target<'_> {
     /// Takes a hit in if it is nearer, or if any will do and it casts a shadow.
     #[inline(always)]
-    fn offer<const ANY: bool>(&mut self, t: f32, error: f32, spot: Spot) {
-        let found = (t, error, spot);
+    fn offer<const ANY: bool>(&mut self, found: (f32, f32, Spot)) {
+        let (t, error, spot) = found;
         let is_taken = self.nearest.yields_to::<ANY>(self.hierarchy, || self.ray.exact(), found)
             && (!ANY || self.hierarchy.casts_shadow(spot.id(self.hierarchy)));
         if is_taken {
@@ -156,40 +158,47 @@ impl Target<'_> {
         }
     }
 
-    /// Offers the lanes that hit; `spot` says where the first of them lies.
+    /// Takes in what is met of a primitive for which f32 cannot tell.
+    #[cold]
+    fn offer_exact<const DEPARTING: bool, const ANY: bool>(&mut self, spot: Spot) {
+        let line = self.ray.exact();
+        let found = if DEPARTING {
+            line.departs_to(self.hierarchy, spot)
+        } else {
+            line.meets_beyond(self.hierarchy, spot)
+        };
+        if let Some(t) = found {
+            self.offer::<ANY>((t, t * exact::ROUNDED, spot));
+        }
+    }
+}
+
+impl TileRays for Target<'_> {
     #[inline(always)]
-    fn offer_lanes<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        candidate: &Candidate<F>,
-        spot: impl Fn(usize) -> Spot,
-    ) {
-        let Candidate { t, error, hit, unclear } = *candidate;
-        let mut unclear = unclear.bits();
-        while unclear != 0 {
-            let spot = spot(unclear.trailing_zeros() as usize);
-            unclear &= unclear - 1;
-            let line = self.ray.exact();
-            let found = if DEPARTING {
-                line.departs_to(self.hierarchy, spot)
-            } else {
-                line.meets_beyond(self.hierarchy, spot)
-            };
-            if let Some(t) = found {
-                self.offer::<ANY>(t, t * exact::ROUNDED, spot);
-            }
-        }
-        let mut bits = (hit & !(t - error).gt(F::splat(self.end))).bits();
-        if bits == 0 {
-            return;
-        }
-        let (mut ts, mut errors) = ([0.0; BLOCK], [0.0; BLOCK]);
-        t.store(&mut ts);
-        error.store(&mut errors);
-        while bits != 0 {
-            let lane = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            self.offer::<ANY>(ts[lane], errors[lane], spot(lane));
-        }
+    fn axes(&self) -> [usize; 3] {
+        self.ray.axes
+    }
+
+    #[inline(always)]
+    fn space<L: Single, const DEPARTING: bool>(&self, _: usize) -> (RaySpace<L>, Origin<L>) {
+        (self.ray.space::<L, DEPARTING>(), self.ray.start())
+    }
+
+    #[inline(always)]
+    fn offer<const ANY: bool>(&mut self, _: &Hierarchy, _: usize, found: (f32, f32, Spot)) {
+        self.offer::<ANY>(found);
+    }
+
+    #[inline(always)]
+    fn offer_exact<const DEPARTING: bool, const ANY: bool>(&mut self, _: &Hierarchy, _: usize, spot: Spot) {
+        self.offer_exact::<DEPARTING, ANY>(spot);
+    }
+}
+
+impl TileLines for Target<'_> {
+    #[inline(always)]
+    fn line<L: Single, const DEPARTING: bool>(&self, _: usize) -> (Line<L>, Origin<L>) {
+        (self.ray.line::<L, DEPARTING>(), self.ray.start())
     }
 }
 
@@ -265,61 +274,16 @@ impl Target<'_> {
     ) {
         match leaf {
             Place::Node(_) => {}
-            Place::Triangles(block) => self.test_triangles::<F::Block, DEPARTING, ANY>(block, counts),
-            Place::Spheres(block) => self.test_spheres::<F::Block, DEPARTING, ANY>(block, counts),
+            Place::Triangles(block) => {
+                tile::triangles::<F::Block, DEPARTING, ANY>(self.hierarchy, block, (self, 1), counts);
+            }
+            Place::Spheres(block) => {
+                tile::spheres::<F::Block, DEPARTING, ANY>(self.hierarchy, block, (self, 1), counts);
+            }
             Place::Polygons(first, count) => {
                 for index in first..first + count {
                     self.test_polygon::<F::Node, DEPARTING, ANY>(index, counts);
                 }
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn test_triangles<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        index: usize,
-        counts: &mut Counts,
-    ) {
-        let ray = self.ray;
-        let block = &self.hierarchy.triangles[index];
-        let (space, padding) = (ray.space::<F, DEPARTING>(), F::splat(ray.padding));
-        let all = !F::Mask::NONE;
-        for first in (0..BLOCK).step_by(F::WIDTH) {
-            let [a, b, c] = &block.vertices;
-            let vertices =
-                [turned(a, ray.axes, first), turned(b, ray.axes, first), turned(c, ray.axes, first)];
-            let start = ray.start(F::load_ids(&block.ids[first..]));
-            let sizes = || [F::load(&block.size[first..]), F::load(&block.error_area[first..])];
-            counts.triangles.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
-            if let Some(candidate) =
-                candidate::triangle::<F, DEPARTING>(&space, padding, vertices, sizes, (all, start))
-            {
-                self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::triangle(index, first + lane));
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn test_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        index: usize,
-        counts: &mut Counts,
-    ) {
-        let ray = self.ray;
-        let block = &self.hierarchy.spheres[index];
-        let (line, padding) = (ray.line::<F, DEPARTING>(), F::splat(ray.padding));
-        let all = !F::Mask::NONE;
-        for first in (0..BLOCK).step_by(F::WIDTH) {
-            let [x, y, z] = turned(&block.centers, [0, 1, 2], first);
-            let start = ray.start(F::load_ids(&block.ids[first..]));
-            let sizes = [F::load(&block.radii[first..]), F::load(&block.slack[first..])];
-            let center = Vector::new(x, y, z);
-            counts.spheres.add(F::WIDTH, in_use(&block.ids[first..], F::WIDTH));
-            if let Some(candidate) =
-                candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, (all, start))
-            {
-                self.offer_lanes::<F, DEPARTING, ANY>(&candidate, |lane| Spot::sphere(index, first + lane));
             }
         }
     }
@@ -379,23 +343,15 @@ impl Target<'_> {
             padding: ray.padding,
         };
         let plane = [Vector::splat(face.point), Vector::splat(face.normal)];
-        let start = ray.start::<f32>(face.id);
+        let start = ray.start::<f32>().on::<DEPARTING>(face.id);
         let candidate = candidate::polygon::<f32, DEPARTING>(&view, plane, &outline, face.slack, start);
-        self.offer_lanes::<f32, DEPARTING, ANY>(&candidate, |_| Spot::polygon(index));
+        let spot = Spot::polygon(index);
+        if candidate.unclear {
+            self.offer_exact::<DEPARTING, ANY>(spot);
+        } else if candidate.hit {
+            self.offer::<ANY>((candidate.t, candidate.error, spot));
+        }
     }
-}
-
-/// Lanes of points in the ray's order of axes. Written out: a closure over arrays is not inlined and passes vectors through
-/// memory, which took a third of the time of single rays, 2026-11.
-#[inline(always)]
-fn turned<F: Single>(points: &[[f32; BLOCK]; 3], [x, y, z]: [usize; 3], first: usize) -> [F; 3] {
-    [F::load(&points[x][first..]), F::load(&points[y][first..]), F::load(&points[z][first..])]
-}
-
-/// Lanes of a block that hold a primitive; those that do come first.
-#[inline(always)]
-fn in_use(ids: &[u32], width: usize) -> usize {
-    ids[..width].iter().map(|&id| usize::from(id != super::NOTHING)).sum()
 }
 
 /// The least or the largest of all lanes: the same in any order, unlike a sum.

@@ -11,7 +11,7 @@ use crate::kernel::RaySpace;
 use crate::kernel::sphere::Line;
 use crate::lanes::{Lanes, Mask, Single};
 use crate::prepare::bvh::Node;
-use crate::prepare::{BLOCK, Hierarchy, Place, TriangleBlock};
+use crate::prepare::{BLOCK, Hierarchy, Place, TriangleBlock, count_there};
 
 impl Packet {
     /// Tests what is in a leaf, against every group from the given one on whose rays meet its box.
@@ -52,9 +52,9 @@ impl Packet {
         }
     }
 
-    /// Tests the triangles of a leaf, those that are in sight, against the shadow rays of some rows: side by side if that is
-    /// less work. Closest hits are so many that to give them back to rows one by one cost more than it saved: primary rays at
-    /// 0.95 to 1.00 of the speed, 2026-11.
+    /// Tests the triangles of a leaf, those that are in sight, against the shadow rays of some rows: in tiles if that is less
+    /// work. Closest hits are so many that to give them back to rows one by one cost more than it saved: primary rays of the
+    /// bunny at 0.92 of the speed, of tetrahedra at 1.07, 2026-11.
     #[inline(always)]
     fn visit_rows<F: Single, const DEPARTING: bool>(
         &mut self,
@@ -63,8 +63,9 @@ impl Packet {
         rows: Rows,
         counts: &mut Counts,
     ) {
-        if picked::pays::<F>(rows) {
-            self.visit_picked::<F, DEPARTING>(hierarchy, (index, in_sight), rows, counts);
+        let triangles = count_there(&hierarchy.triangles[index].ids).min(in_sight.count_ones() as usize);
+        if picked::pays::<F>(rows, triangles) {
+            self.visit_picked::<F, DEPARTING>(hierarchy, index, rows, counts);
             return;
         }
         let leaf = (Place::Triangles(index), in_sight);

@@ -1,8 +1,9 @@
 //! The rays of a list against what is in a leaf.
 
 use super::super::candidate::Candidate;
-use super::super::exact::{self, Spot};
+use super::super::exact::Spot;
 use super::super::leaf::{RayLanes, RayLines};
+use super::super::tile::{Origin, TileLines, TileRays};
 use super::rays::{BoxLanes, StreamRays};
 use crate::kernel::RaySpace;
 use crate::kernel::axes_from;
@@ -23,34 +24,6 @@ impl<'a, L: Single> Listed<'a, L> {
     pub(super) fn new(rays: &'a mut StreamRays, numbers: &'a [u32], boxes: BoxLanes<L>) -> Self {
         let faces = rays.faces(numbers);
         Self { rays, numbers: &numbers[..L::WIDTH], boxes, faces }
-    }
-
-    /// Takes a hit in if it is nearer, or if any will do.
-    #[inline(always)]
-    fn offer_one<const ANY: bool>(&mut self, hierarchy: &Hierarchy, number: usize, found: (f32, f32, Spot)) {
-        if self.rays.is_done::<ANY>(number) {
-            return;
-        }
-        let nearest = self.rays.nearest[number];
-        if nearest.yields_to::<ANY>(hierarchy, || self.rays.exact(number), found) {
-            let (t, error, spot) = found;
-            self.rays.keep::<ANY>(number, exact::Nearest { t, error, spot });
-        }
-    }
-
-    #[cold]
-    fn offer_exact<const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        hierarchy: &Hierarchy,
-        number: usize,
-        spot: Spot,
-    ) {
-        let line = self.rays.exact(number);
-        let found =
-            if DEPARTING { line.departs_to(hierarchy, spot) } else { line.meets_beyond(hierarchy, spot) };
-        if let Some(t) = found {
-            self.offer_one::<ANY>(hierarchy, number, (t, t * exact::ROUNDED, spot));
-        }
     }
 }
 
@@ -81,14 +54,10 @@ impl<L: Single> RayLanes<L> for Listed<'_, L> {
     fn space<const DEPARTING: bool>(&self) -> RaySpace<L> {
         let Vector { x, y, z } = self.boxes.origin;
         let [shear_x, shear_y, t_per_z, _, low_x, low_y, low_z, _] = self.faces;
-        let turned = |x: L, y: L, z: L| match self.rays.class.third {
-            0 => [y, z, x],
-            1 => [z, x, y],
-            _ => [x, y, z],
-        };
+        let third = self.rays.class.third;
         RaySpace {
-            origin: turned(x, y, z),
-            origin_low: DEPARTING.then(|| turned(low_x, low_y, low_z)),
+            origin: turned(third, [x, y, z]),
+            origin_low: DEPARTING.then(|| turned(third, [low_x, low_y, low_z])),
             shear: [shear_x, shear_y],
             t_per_z,
         }
@@ -122,7 +91,7 @@ impl<L: Single> RayLanes<L> for Listed<'_, L> {
         while unclear != 0 {
             let number = self.numbers[unclear.trailing_zeros() as usize] as usize;
             unclear &= unclear - 1;
-            self.offer_exact::<DEPARTING, ANY>(hierarchy, number, spot);
+            self.rays.offer_exact::<DEPARTING, ANY>(hierarchy, number, spot);
         }
         let mut bits = (hit & mask & !(t - error).gt(self.boxes.end)).bits();
         if bits == 0 {
@@ -135,7 +104,93 @@ impl<L: Single> RayLanes<L> for Listed<'_, L> {
             let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
             let number = self.numbers[lane] as usize;
-            self.offer_one::<ANY>(hierarchy, number, (ts[lane], errors[lane], spot));
+            self.rays.offer::<ANY>(hierarchy, number, (ts[lane], errors[lane], spot));
         }
+    }
+}
+
+/// Rays of these numbers.
+pub(super) struct Tiled<'a> {
+    rays: &'a mut StreamRays,
+    /// As many as go into a tile may be read from each on.
+    numbers: &'a [u32],
+}
+
+impl<'a> Tiled<'a> {
+    pub(super) fn new(rays: &'a mut StreamRays, numbers: &'a [u32]) -> Self {
+        Self { rays, numbers }
+    }
+
+    /// What the origins' rounding left out, and the departures' bits, where there are any.
+    #[inline(always)]
+    fn departures<L: Single, const DEPARTING: bool>(&self, numbers: &[u32]) -> [L; 4] {
+        if DEPARTING { self.rays.spread_departures::<L>(numbers) } else { [L::splat(0.0); 4] }
+    }
+}
+
+impl TileRays for Tiled<'_> {
+    #[inline(always)]
+    fn axes(&self) -> [usize; 3] {
+        axes_from(self.rays.class.third)
+    }
+
+    #[inline(always)]
+    fn space<L: Single, const DEPARTING: bool>(&self, place: usize) -> (RaySpace<L>, Origin<L>) {
+        let numbers = &self.numbers[place..];
+        let [x, y, z, padding] = self.rays.spread_origins::<L>(numbers);
+        let [shear_x, shear_y, t_per_z, t_min] = self.rays.spread_shears::<L>(numbers);
+        let [low_x, low_y, low_z, departure] = self.departures::<L, DEPARTING>(numbers);
+        let third = self.rays.class.third;
+        let space = RaySpace {
+            origin: turned(third, [x, y, z]),
+            origin_low: DEPARTING.then(|| turned(third, [low_x, low_y, low_z])),
+            shear: [shear_x, shear_y],
+            t_per_z,
+        };
+        (space, Origin { padding, t_min, departure })
+    }
+
+    #[inline(always)]
+    fn offer<const ANY: bool>(&mut self, hierarchy: &Hierarchy, place: usize, found: (f32, f32, Spot)) {
+        self.rays.offer::<ANY>(hierarchy, self.numbers[place] as usize, found);
+    }
+
+    #[inline(always)]
+    fn offer_exact<const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        place: usize,
+        spot: Spot,
+    ) {
+        self.rays.offer_exact::<DEPARTING, ANY>(hierarchy, self.numbers[place] as usize, spot);
+    }
+}
+
+impl TileLines for Tiled<'_> {
+    #[inline(always)]
+    fn line<L: Single, const DEPARTING: bool>(&self, place: usize) -> (Line<L>, Origin<L>) {
+        let numbers = &self.numbers[place..];
+        let [x, y, z, padding] = self.rays.spread_origins::<L>(numbers);
+        let [.., t_min] = self.rays.spread_shears::<L>(numbers);
+        let [low_x, low_y, low_z, departure] = self.departures::<L, DEPARTING>(numbers);
+        let ([dx, dy, dz, a], inverse_a) = self.rays.spread_lines::<L>(numbers);
+        let line = Line {
+            origin: Vector::new(x, y, z),
+            origin_low: DEPARTING.then(|| Vector::new(low_x, low_y, low_z)),
+            direction: Vector::new(dx, dy, dz),
+            a,
+            inverse_a,
+        };
+        (line, Origin { padding, t_min, departure })
+    }
+}
+
+/// In the order of axes of rays that are fastest along the third.
+#[inline(always)]
+fn turned<L: Copy>(third: usize, [x, y, z]: [L; 3]) -> [L; 3] {
+    match third {
+        0 => [y, z, x],
+        1 => [z, x, y],
+        _ => [x, y, z],
     }
 }

@@ -138,6 +138,32 @@ impl StreamRays {
         L::transposed(|lane| &self.lines[numbers[lane] as usize % CAPACITY])
     }
 
+    /// Of rays that are spread over lanes: origins, and by how much boxes are grown.
+    #[inline(always)]
+    pub(super) fn spread_origins<L: Single>(&self, numbers: &[u32]) -> [L; 4] {
+        L::spread_halves(|ray| &self.slabs[numbers[ray] as usize % CAPACITY].halves()[0])
+    }
+
+    /// Shears, t for each unit along the fastest axis, and t beyond which hits are wanted.
+    #[inline(always)]
+    pub(super) fn spread_shears<L: Single>(&self, numbers: &[u32]) -> [L; 4] {
+        L::spread_halves(|ray| &self.faces[numbers[ray] as usize % CAPACITY].halves()[0])
+    }
+
+    /// What origins' rounding left out, and the bits of departures.
+    #[inline(always)]
+    pub(super) fn spread_departures<L: Single>(&self, numbers: &[u32]) -> [L; 4] {
+        L::spread_halves(|ray| &self.faces[numbers[ray] as usize % CAPACITY].halves()[1])
+    }
+
+    /// d, a and 1/a.
+    #[inline(always)]
+    pub(super) fn spread_lines<L: Single>(&self, numbers: &[u32]) -> ([L; 4], L) {
+        let halves = |ray: usize| self.lines[numbers[ray] as usize % CAPACITY].halves();
+        let [inverse_a, ..] = L::spread_halves(|ray| &halves(ray)[1]);
+        (L::spread_halves(|ray| &halves(ray)[0]), inverse_a)
+    }
+
     /// Writes down one ray of them. Each field by itself: a ray that was made as a whole was copied by wide loads of what had
     /// only just been stored, where a sixth of the samples of rays alone fell (2026-11). Whole walks became no faster.
     #[inline(always)]
@@ -175,6 +201,39 @@ impl StreamRays {
     #[inline(always)]
     pub(super) fn is_done<const ANY: bool>(&self, number: usize) -> bool {
         ANY && self.nearest[number].spot != Spot::NOTHING
+    }
+
+    /// Takes a hit of a ray in if it is nearer, or if any will do.
+    #[inline(always)]
+    pub(super) fn offer<const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        number: usize,
+        (t, error, spot): (f32, f32, Spot),
+    ) {
+        if self.is_done::<ANY>(number) {
+            return;
+        }
+        let nearest = self.nearest[number];
+        if nearest.yields_to::<ANY>(hierarchy, || self.exact(number), (t, error, spot)) {
+            self.keep::<ANY>(number, Nearest { t, error, spot });
+        }
+    }
+
+    /// Takes in what a ray meets of a primitive for which f32 cannot tell.
+    #[cold]
+    pub(super) fn offer_exact<const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        number: usize,
+        spot: Spot,
+    ) {
+        let line = self.exact(number);
+        let found =
+            if DEPARTING { line.departs_to(hierarchy, spot) } else { line.meets_beyond(hierarchy, spot) };
+        if let Some(t) = found {
+            self.offer::<ANY>(hierarchy, number, (t, t * exact::ROUNDED, spot));
+        }
     }
 
     /// Keeps what was found for a ray.

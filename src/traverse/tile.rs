@@ -1,0 +1,205 @@
+//! A few rays beside the primitives of a block: each lane is a pair of the two.
+//!
+//! Where few rays meet a leaf, rays in lanes leave most lanes empty, once for each primitive. Of sixteen lanes four rays fill all
+//! with a block's four primitives at once. One ray alone is the least of tiles.
+
+use super::candidate::{self, Candidate, Start};
+use super::exact::Spot;
+use super::{Counts, NOTHING};
+use crate::kernel::RaySpace;
+use crate::kernel::sphere::Line;
+use crate::lanes::{Lanes, Mask, Single, Vector};
+use crate::prepare::{BLOCK, Hierarchy, count_there};
+
+/// Rays one after the other, each of which is spread over as many lanes as a block has, and what they have found so far.
+pub(super) trait TileRays {
+    /// Order of axes in ray space, the same for all.
+    fn axes(&self) -> [usize; 3];
+    /// Of the rays from a place on, with what else tests of triangles ask.
+    fn space<L: Single, const DEPARTING: bool>(&self, place: usize) -> (RaySpace<L>, Origin<L>);
+    /// Takes a hit of the ray in a place in if it is nearer, or if any will do.
+    fn offer<const ANY: bool>(&mut self, hierarchy: &Hierarchy, place: usize, found: (f32, f32, Spot));
+    /// The same of a primitive for which f32 cannot tell.
+    fn offer_exact<const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        place: usize,
+        spot: Spot,
+    );
+}
+
+/// The same for spheres too, which ask for more.
+pub(super) trait TileLines: TileRays {
+    /// Of the rays from a place on.
+    fn line<L: Single, const DEPARTING: bool>(&self, place: usize) -> (Line<L>, Origin<L>);
+}
+
+/// Where and how rays start.
+pub(super) struct Origin<L> {
+    /// How far a surface may seem to be from where it is.
+    pub(super) padding: L,
+    /// Hits are wanted beyond this t; not read where rays start on primitives.
+    pub(super) t_min: L,
+    /// The bits of the departure; not read where none starts on one.
+    pub(super) departure: L,
+}
+
+impl<L: Single> Origin<L> {
+    /// As primitives of these ids see it.
+    #[inline(always)]
+    pub(super) fn on<const DEPARTING: bool>(&self, ids: L::Ids) -> Start<L> {
+        if !DEPARTING {
+            return Start { own: L::Mask::NONE, inward: L::Mask::NONE, t_min: self.t_min };
+        }
+        let departure = self.departure.bits_as_ids();
+        let own = L::ids_eq(L::ids_half(departure), ids);
+        Start { own, inward: L::ids_odd(departure), t_min: L::splat(0.0) }
+    }
+}
+
+/// Tests the triangles of a block against so many rays.
+#[inline(always)]
+pub(super) fn triangles<L: Single, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    index: usize,
+    (rays, count): (&mut impl TileRays, usize),
+    counts: &mut Counts,
+) {
+    let block = &hierarchy.triangles[index];
+    let [a, b, c] = &block.vertices;
+    let [x, y, z] = rays.axes();
+    for side in Side::each::<L>(&block.ids) {
+        // Written out: a closure over arrays of lanes is not inlined and passes them through memory, which took a third of the
+        // time, 2026-11.
+        let vertices = [
+            [side.repeated(&a[x]), side.repeated(&a[y]), side.repeated(&a[z])],
+            [side.repeated(&b[x]), side.repeated(&b[y]), side.repeated(&b[z])],
+            [side.repeated(&c[x]), side.repeated(&c[y]), side.repeated(&c[z])],
+        ];
+        for place in (0..count).step_by(rays_of::<L>()) {
+            let (mask, used) = mask_of::<L>(count - place);
+            let (space, origin) = rays.space::<L, DEPARTING>(place);
+            let start = origin.on::<DEPARTING>(side.ids::<L>());
+            let sizes = || [side.repeated(&block.size), side.repeated(&block.error_area)];
+            counts.triangles.add(L::WIDTH, used * side.there);
+            if let Some(candidate) =
+                candidate::triangle::<L, DEPARTING>(&space, origin.padding, vertices, sizes, (mask, start))
+            {
+                let spot = |lane| Spot::triangle(index, lane);
+                side.offer::<L, DEPARTING, ANY>(hierarchy, (rays, place), (&candidate, mask), spot);
+            }
+        }
+    }
+}
+
+/// The same of spheres.
+#[inline(always)]
+pub(super) fn spheres<L: Single, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    index: usize,
+    (rays, count): (&mut impl TileLines, usize),
+    counts: &mut Counts,
+) {
+    let block = &hierarchy.spheres[index];
+    let [x, y, z] = &block.centers;
+    for side in Side::each::<L>(&block.ids) {
+        let center = Vector::new(side.repeated(x), side.repeated(y), side.repeated(z));
+        let sizes = [side.repeated(&block.radii), side.repeated(&block.slack)];
+        for place in (0..count).step_by(rays_of::<L>()) {
+            let (mask, used) = mask_of::<L>(count - place);
+            let (line, origin) = rays.line::<L, DEPARTING>(place);
+            let start = origin.on::<DEPARTING>(side.ids::<L>());
+            counts.spheres.add(L::WIDTH, used * side.there);
+            if let Some(candidate) =
+                candidate::sphere::<L, DEPARTING>(&line, origin.padding, center, sizes, (mask, start))
+            {
+                let spot = |lane| Spot::sphere(index, lane);
+                side.offer::<L, DEPARTING, ANY>(hierarchy, (rays, place), (&candidate, mask), spot);
+            }
+        }
+    }
+}
+
+/// How often the kernel runs for so many rays.
+#[inline(always)]
+pub(super) fn runs<L: Single>(rays: usize) -> usize {
+    rays.div_ceil(rays_of::<L>()) * (BLOCK / L::Block::WIDTH)
+}
+
+/// How many rays go into these lanes.
+const fn rays_of<L: Single>() -> usize {
+    L::WIDTH / L::Block::WIDTH
+}
+
+/// The lanes of some rays or, if they are more than go into lanes, all; and how many rays that is.
+#[inline(always)]
+fn mask_of<L: Single>(count: usize) -> (L::Mask, usize) {
+    let used = count.min(rays_of::<L>());
+    (L::first(used * L::Block::WIDTH), used)
+}
+
+/// The primitives of a block that lanes take at once: all, unless lanes are fewer.
+struct Side<'a> {
+    ids: &'a [u32; BLOCK],
+    first: usize,
+    there: usize,
+}
+
+impl<'a> Side<'a> {
+    #[inline(always)]
+    fn each<L: Single>(ids: &'a [u32; BLOCK]) -> impl Iterator<Item = Self> {
+        let side =
+            move |first: usize| Self { ids, first, there: count_there(&ids[first..][..L::Block::WIDTH]) };
+        (0..BLOCK).step_by(L::Block::WIDTH).map(side)
+    }
+
+    #[inline(always)]
+    fn repeated<L: Single>(&self, column: &[f32; BLOCK]) -> L {
+        L::repeated(L::Block::load(&column[self.first..]))
+    }
+
+    #[inline(always)]
+    fn ids<L: Single>(&self) -> L::Ids {
+        self.repeated::<L>(bytemuck::cast_ref(self.ids)).bits_as_ids()
+    }
+
+    /// Offers what pairs of a mask hit to the rays from a place on.
+    #[inline(always)]
+    fn offer<L: Single, const DEPARTING: bool, const ANY: bool>(
+        &self,
+        hierarchy: &Hierarchy,
+        (rays, place): (&mut impl TileRays, usize),
+        (candidate, mask): (&Candidate<L>, L::Mask),
+        spot: impl Fn(usize) -> Spot,
+    ) {
+        let Candidate { t, error, hit, unclear } = *candidate;
+        let pair = |bit: usize| (place + bit / L::Block::WIDTH, self.first + bit % L::Block::WIDTH);
+        let is_asked = |lane: usize| {
+            let id = self.ids[lane];
+            id != NOTHING && (!ANY || hierarchy.casts_shadow(id))
+        };
+        let mut unclear = (unclear & mask).bits();
+        while unclear != 0 {
+            let (place, lane) = pair(unclear.trailing_zeros() as usize);
+            unclear &= unclear - 1;
+            if is_asked(lane) {
+                rays.offer_exact::<DEPARTING, ANY>(hierarchy, place, spot(lane));
+            }
+        }
+        let mut bits = (hit & mask).bits();
+        if bits == 0 {
+            return;
+        }
+        let (mut ts, mut errors) = ([0.0; 16], [0.0; 16]);
+        t.store(&mut ts);
+        error.store(&mut errors);
+        while bits != 0 {
+            let bit = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let (place, lane) = pair(bit);
+            if is_asked(lane) {
+                rays.offer::<ANY>(hierarchy, place, (ts[bit], errors[bit], spot(lane)));
+            }
+        }
+    }
+}
