@@ -3,6 +3,7 @@
 //!
 //! - `rays`: what the tests need of each ray
 //! - `leaf`: the rays of a list against what is in a leaf
+//! - `later`: leaves whose memory has yet to come
 //! - `loners`: rays that have left the others, several at a time
 //!
 //! This file makes the lists and walks.
@@ -11,6 +12,7 @@
 //! "Efficient Ray Tracing Kernels for Modern CPU Architectures", 2015 (rays of one octant, whose order of children is known
 //! before).
 
+mod later;
 mod leaf;
 mod loners;
 mod rays;
@@ -20,6 +22,7 @@ use super::{Counts, Ends, child, tile};
 use crate::lanes::{Lanes, Mask, Single, prefetch};
 use crate::prepare::bvh::{DEPTH_LIMIT, Node, WIDTH};
 use crate::prepare::{Hierarchy, Place};
+use later::Later;
 use leaf::{Listed, Tiled};
 use loners::Loners;
 pub(super) use rays::Class;
@@ -57,6 +60,7 @@ pub(super) struct Stream {
     stack: Box<[Waiting; STACK]>,
     waiting: usize,
     loners: Loners,
+    later: Later,
 }
 
 /// A child that waits with the rays that meet it: a part of the lists.
@@ -76,6 +80,7 @@ impl Stream {
             stack: Box::new([Waiting { node: 0, slot: 0, first: 0, count: 0 }; STACK]),
             waiting: 0,
             loners: Loners::new(),
+            later: Later::new(),
         }
     }
 
@@ -132,15 +137,15 @@ impl Stream {
             let few = if matches!(place, Place::Polygons(..)) { FEW_AT_POLYGONS } else { FEW };
             let is_long = count > F::Node::WIDTH;
             match place {
-                Place::Triangles(_) | Place::Spheres(_) if count <= MOST_IN_TILES => {
-                    self.visit_in_tiles::<F, DEPARTING, ANY>(hierarchy, place, (first, count), counts);
-                }
-                _ if count <= few => {
-                    for &number in &self.lists[first..first + count] {
-                        self.loners.push(hierarchy, number, child);
+                leaf @ (Place::Triangles(_) | Place::Spheres(_)) if count <= MOST_IN_TILES => {
+                    if ANY && self.later.is_full() {
+                        self.visit_waiting::<F, DEPARTING, ANY>(hierarchy, counts);
                     }
-                    if self.loners.is_full() {
-                        self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, false, counts);
+                    let list = (&self.lists[first..], count);
+                    if ANY {
+                        self.later.push(leaf, list);
+                    } else {
+                        visit_in_tiles::<F, DEPARTING, ANY>(hierarchy, leaf, (&mut self.rays, list), counts);
                     }
                 }
                 Place::Node(index) if is_long => self.visit::<F>(hierarchy, index, (first, count), counts),
@@ -155,7 +160,21 @@ impl Stream {
                 }
             }
         }
+        while self.visit_waiting::<F, DEPARTING, ANY>(hierarchy, counts) {}
         self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, true, counts);
+    }
+
+    /// Visits the leaf that has waited longest; false if none waits.
+    #[inline(always)]
+    fn visit_waiting<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        counts: &mut Counts,
+    ) -> bool {
+        let Some(visit) = self.later.pop() else { return false };
+        let rays = (&mut self.rays, visit.list());
+        visit_in_tiles::<F, DEPARTING, ANY>(hierarchy, visit.leaf, rays, counts);
+        true
     }
 
     /// Puts the children that rays of a list meet on the stack, each with its list, the nearest on top.
@@ -220,27 +239,6 @@ impl Stream {
         self.waiting = waiting;
     }
 
-    /// Tests what is in a leaf with the rays of a short list.
-    #[inline(never)]
-    fn visit_in_tiles<F: Single, const DEPARTING: bool, const ANY: bool>(
-        &mut self,
-        hierarchy: &Hierarchy,
-        leaf: Place,
-        (first, count): (usize, usize),
-        counts: &mut Counts,
-    ) {
-        let mut rays = Tiled::new(&mut self.rays, &self.lists[first..]);
-        match leaf {
-            Place::Triangles(index) => {
-                tile::triangles::<F, DEPARTING, ANY>(hierarchy, index, (&mut rays, count), counts);
-            }
-            Place::Spheres(index) => {
-                tile::spheres::<F, DEPARTING, ANY>(hierarchy, index, (&mut rays, count), counts);
-            }
-            Place::Node(_) | Place::Polygons(..) => {}
-        }
-    }
-
     /// Tests what is in a leaf with those rays of a list that, with what they have found by now, still look for hits there.
     #[inline(never)]
     fn visit_leaf<L: Single, const DEPARTING: bool, const ANY: bool>(
@@ -273,5 +271,25 @@ impl Stream {
                 );
             }
         }
+    }
+}
+
+/// Tests what is in a leaf with the rays of a short list, of so many numbers.
+#[inline(never)]
+fn visit_in_tiles<F: Single, const DEPARTING: bool, const ANY: bool>(
+    hierarchy: &Hierarchy,
+    leaf: Place,
+    (rays, (list, count)): (&mut StreamRays, (&[u32], usize)),
+    counts: &mut Counts,
+) {
+    let mut rays = Tiled::new(rays, list);
+    match leaf {
+        Place::Triangles(index) => {
+            tile::triangles::<F, DEPARTING, ANY>(hierarchy, index, (&mut rays, count), counts);
+        }
+        Place::Spheres(index) => {
+            tile::spheres::<F, DEPARTING, ANY>(hierarchy, index, (&mut rays, count), counts);
+        }
+        Place::Node(_) | Place::Polygons(..) => {}
     }
 }
