@@ -3,7 +3,7 @@
 //!
 //! - `rays`: what the tests need of each ray
 //! - `leaf`: the rays of a list against what is in a leaf
-//! - `later`: leaves whose memory has yet to come
+//! - `later`: leaves of triangles whose memory has yet to come
 //! - `loners`: rays that have left the others, several at a time
 //!
 //! This file makes the lists and walks.
@@ -137,15 +137,21 @@ impl Stream {
             let few = if matches!(place, Place::Polygons(..)) { FEW_AT_POLYGONS } else { FEW };
             let is_long = count > F::Node::WIDTH;
             match place {
-                leaf @ (Place::Triangles(_) | Place::Spheres(_)) if count <= MOST_IN_TILES => {
-                    if ANY && self.later.is_full() {
+                Place::Triangles(block) if count <= MOST_IN_TILES => {
+                    if self.later.is_full() {
                         self.visit_waiting::<F, DEPARTING, ANY>(hierarchy, counts);
                     }
-                    let list = (&self.lists[first..], count);
-                    if ANY {
-                        self.later.push(leaf, list);
-                    } else {
-                        visit_in_tiles::<F, DEPARTING, ANY>(hierarchy, leaf, (&mut self.rays, list), counts);
+                    self.later.push(block, (&self.lists[first..], count));
+                }
+                Place::Spheres(block) if count <= MOST_IN_TILES => {
+                    self.visit_spheres::<F, DEPARTING, ANY>(hierarchy, block, (first, count), counts);
+                }
+                _ if count <= few => {
+                    for &number in &self.lists[first..first + count] {
+                        self.loners.push(hierarchy, number, child);
+                    }
+                    if self.loners.is_full() {
+                        self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, false, counts);
                     }
                 }
                 Place::Node(index) if is_long => self.visit::<F>(hierarchy, index, (first, count), counts),
@@ -164,17 +170,31 @@ impl Stream {
         self.loners.run::<F, DEPARTING, ANY>(hierarchy, &mut self.rays, true, counts);
     }
 
-    /// Visits the leaf that has waited longest; false if none waits.
-    #[inline(always)]
+    /// Tests the triangles that have waited longest with the rays of their list; false if none wait.
+    #[inline(never)]
     fn visit_waiting<F: Single, const DEPARTING: bool, const ANY: bool>(
         &mut self,
         hierarchy: &Hierarchy,
         counts: &mut Counts,
     ) -> bool {
         let Some(visit) = self.later.pop() else { return false };
-        let rays = (&mut self.rays, visit.list());
-        visit_in_tiles::<F, DEPARTING, ANY>(hierarchy, visit.leaf, rays, counts);
+        let (list, count) = visit.list();
+        let rays = &mut Tiled::new(&mut self.rays, list);
+        tile::triangles::<F, DEPARTING, ANY>(hierarchy, visit.block, (rays, count), counts);
         true
+    }
+
+    /// Tests the spheres of a leaf with the rays of a short list.
+    #[inline(never)]
+    fn visit_spheres<F: Single, const DEPARTING: bool, const ANY: bool>(
+        &mut self,
+        hierarchy: &Hierarchy,
+        block: usize,
+        (first, count): (usize, usize),
+        counts: &mut Counts,
+    ) {
+        let rays = &mut Tiled::new(&mut self.rays, &self.lists[first..]);
+        tile::spheres::<F, DEPARTING, ANY>(hierarchy, block, (rays, count), counts);
     }
 
     /// Puts the children that rays of a list meet on the stack, each with its list, the nearest on top.
@@ -271,25 +291,5 @@ impl Stream {
                 );
             }
         }
-    }
-}
-
-/// Tests what is in a leaf with the rays of a short list, of so many numbers.
-#[inline(never)]
-fn visit_in_tiles<F: Single, const DEPARTING: bool, const ANY: bool>(
-    hierarchy: &Hierarchy,
-    leaf: Place,
-    (rays, (list, count)): (&mut StreamRays, (&[u32], usize)),
-    counts: &mut Counts,
-) {
-    let mut rays = Tiled::new(rays, list);
-    match leaf {
-        Place::Triangles(index) => {
-            tile::triangles::<F, DEPARTING, ANY>(hierarchy, index, (&mut rays, count), counts);
-        }
-        Place::Spheres(index) => {
-            tile::spheres::<F, DEPARTING, ANY>(hierarchy, index, (&mut rays, count), counts);
-        }
-        Place::Node(_) | Place::Polygons(..) => {}
     }
 }
