@@ -203,3 +203,83 @@ impl<'a> Side<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Job, Width};
+    use crate::prepare::{Place, Prepared};
+    use crate::scene::{Geometry, Material, MaterialId, Scene};
+    use glam::Vec3;
+
+    /// Any number of rays along the z axis, all the same: those beyond the last that is asked for would meet as much.
+    struct Alike {
+        found: Vec<(usize, Spot)>,
+    }
+
+    impl TileRays for Alike {
+        fn axes(&self) -> [usize; 3] {
+            [0, 1, 2]
+        }
+
+        fn space<L: Single, const DEPARTING: bool>(&self, _: usize) -> (RaySpace<L>, Origin<L>) {
+            let [zero, one] = [0.0, 1.0].map(L::splat);
+            let space =
+                RaySpace { origin: [zero, zero, -one], origin_low: None, shear: [zero, zero], t_per_z: one };
+            (space, Origin { padding: zero, t_min: zero, departure: zero })
+        }
+
+        fn offer<const ANY: bool>(&mut self, _: &Hierarchy, place: usize, (_, _, spot): (f32, f32, Spot)) {
+            self.found.push((place, spot));
+        }
+
+        fn offer_exact<const DEPARTING: bool, const ANY: bool>(
+            &mut self,
+            _: &Hierarchy,
+            place: usize,
+            spot: Spot,
+        ) {
+            self.found.push((place, spot));
+        }
+    }
+
+    struct Pairs<'a>(&'a Hierarchy, usize);
+
+    impl Job for Pairs<'_> {
+        type Output = (Vec<(usize, Spot)>, Counts);
+
+        fn run<F: Single>(self) -> Self::Output {
+            let Self(hierarchy, count) = self;
+            let (mut rays, mut counts) = (Alike { found: Vec::new() }, Counts::default());
+            let Some(Place::Triangles(index)) =
+                hierarchy.nodes[0].children.into_iter().find_map(Hierarchy::place)
+            else {
+                unreachable!("one leaf of triangles")
+            };
+            triangles::<F, false, false>(hierarchy, index, (&mut rays, count), &mut counts);
+            (rays.found, counts)
+        }
+    }
+
+    #[test]
+    fn each_ray_meets_each_primitive_once_and_nobody_else_does() {
+        let mut geometry = Geometry::default();
+        for z in [1.0, 2.0, 3.0] {
+            let corners = [Vec3::new(-1.0, -1.0, z), Vec3::new(1.0, -1.0, z), Vec3::new(0.0, 1.0, z)];
+            let first = geometry.add_vertices(corners).unwrap();
+            geometry.add_triangle([first, first + 1, first + 2], None, MaterialId(0)).unwrap();
+        }
+        let scene = Scene::unlit(geometry, vec![Material::grey()]);
+        let prepared = Prepared::new(&scene).unwrap();
+        for width in Width::ALL {
+            for count in 1..=9 {
+                let (mut found, counts) = width.run(Pairs(&prepared.hierarchy, count));
+                found.sort_by_key(|&(place, spot)| (place, spot.0));
+                let places: Vec<usize> = found.iter().map(|&(place, _)| place).collect();
+                let expected: Vec<usize> = (0..count).flat_map(|place| [place; 3]).collect();
+                assert_eq!(places, expected, "{count} rays, {width:?}");
+                assert_eq!(counts.triangles.used, 3 * count as u64);
+            }
+        }
+    }
+}
