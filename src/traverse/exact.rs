@@ -182,10 +182,23 @@ impl Line {
         Self { origin: origin + origin_low, direction, departure, t_min }
     }
 
+    /// What a ray, which starts on a primitive if DEPARTING, meets of one for which f32 cannot tell: t, how far it may be off, and
+    /// where.
+    #[cold]
+    pub(super) fn meets<const DEPARTING: bool>(
+        &self,
+        hierarchy: &Hierarchy,
+        spot: Spot,
+    ) -> Option<(f32, f32, Spot)> {
+        let t =
+            if DEPARTING { self.departs_to(hierarchy, spot) } else { self.meets_beyond(hierarchy, spot) }?;
+        Some((t, t * ROUNDED, spot))
+    }
+
     /// Where a ray meets a surface beyond `t_min`, next to which it starts there. Whether the ray passes inside of a face's edges is
     /// asked as the kernels ask it: faces that share an edge decide that alike.
     #[cold]
-    pub(super) fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
+    fn meets_beyond(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         match spot.shape(hierarchy) {
             Shape::Sphere { center, radius, .. } => {
                 self.sphere(center, radius).into_iter().find_map(|hit| self.beyond_t_min(hit.t))
@@ -224,7 +237,7 @@ impl Line {
     /// Where a ray that leaves a surface meets another. What the start touches, as far as f64 can tell and polygons are flat, it
     /// meets at t = 0, which is no hit.
     #[cold]
-    pub(super) fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
+    fn departs_to(&self, hierarchy: &Hierarchy, spot: Spot) -> Option<f32> {
         let bend = hierarchy.bend(self.departure >> 1) + hierarchy.bend(spot.id(hierarchy));
         let departs_to_face = |corners: &[DVec3]| {
             let t =

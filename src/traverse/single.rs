@@ -161,14 +161,8 @@ impl Target<'_> {
     /// Takes in what is met of a primitive for which f32 cannot tell.
     #[cold]
     fn offer_exact<const DEPARTING: bool, const ANY: bool>(&mut self, spot: Spot) {
-        let line = self.ray.exact();
-        let found = if DEPARTING {
-            line.departs_to(self.hierarchy, spot)
-        } else {
-            line.meets_beyond(self.hierarchy, spot)
-        };
-        if let Some(t) = found {
-            self.offer::<ANY>((t, t * exact::ROUNDED, spot));
+        if let Some(found) = self.ray.exact().meets::<DEPARTING>(self.hierarchy, spot) {
+            self.offer::<ANY>(found);
         }
     }
 }

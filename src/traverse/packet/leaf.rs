@@ -220,11 +220,8 @@ impl Packet {
         if self.t[row] < 0.0 {
             return;
         }
-        let line = self.exact(row);
-        let found =
-            if DEPARTING { line.departs_to(hierarchy, spot) } else { line.meets_beyond(hierarchy, spot) };
-        if let Some(t) = found {
-            self.offer_one::<ANY>(hierarchy, row, (t, t * exact::ROUNDED), (spot, spot.id(hierarchy)));
+        if let Some((t, error, spot)) = self.exact(row).meets::<DEPARTING>(hierarchy, spot) {
+            self.offer_one::<ANY>(hierarchy, row, (t, error), (spot, spot.id(hierarchy)));
         }
     }
 

@@ -228,11 +228,8 @@ impl StreamRays {
         number: usize,
         spot: Spot,
     ) {
-        let line = self.exact(number);
-        let found =
-            if DEPARTING { line.departs_to(hierarchy, spot) } else { line.meets_beyond(hierarchy, spot) };
-        if let Some(t) = found {
-            self.offer::<ANY>(hierarchy, number, (t, t * exact::ROUNDED, spot));
+        if let Some(found) = self.exact(number).meets::<DEPARTING>(hierarchy, spot) {
+            self.offer::<ANY>(hierarchy, number, found);
         }
     }
 

@@ -58,12 +58,7 @@ impl Query {
         let mut hits = Vec::new();
         let mut offer = |candidate: Candidate<f32>, spot: Spot| {
             if candidate.unclear {
-                let found = if DEPARTING {
-                    self.exact().departs_to(hierarchy, spot)
-                } else {
-                    self.exact().meets_beyond(hierarchy, spot)
-                };
-                hits.extend(found.map(|t| (t, t * exact::ROUNDED, spot)));
+                hits.extend(self.exact().meets::<DEPARTING>(hierarchy, spot));
             } else if candidate.hit {
                 hits.push((candidate.t, candidate.error, spot));
             }
