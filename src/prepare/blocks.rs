@@ -30,18 +30,15 @@ pub(crate) struct TriangleBlock {
 /// |---|---|
 /// | 0–47 | `centers`: x, y and z; a lane a sphere |
 /// | 48–63 | `radii` |
-/// | 64–79 | `slack` |
-/// | 80–95 | `ids` |
+/// | 64–79 | `ids` |
 ///
-/// One and a half lines of memory: it lies across two wherever it begins at a half.
-#[repr(C, align(32))]
+/// One and a quarter lines of memory: it lies across two wherever it begins at a quarter.
+#[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub(crate) struct SphereBlock {
     pub(crate) centers: [[f32; BLOCK]; 3],
     /// Not a number where there is no sphere.
     pub(crate) radii: [f32; BLOCK],
-    /// What is nearer to the surface than this touches it, times the radius.
-    pub(crate) slack: [f32; BLOCK],
     pub(crate) ids: [u32; BLOCK],
 }
 
@@ -74,15 +71,21 @@ pub(crate) fn count_there(ids: &[u32]) -> usize {
     ids.iter().map(|&id| usize::from(id != u32::MAX)).sum()
 }
 
-const _: () = assert!(size_of::<TriangleBlock>() == 192 && size_of::<SphereBlock>() == 96);
+const _: () = assert!(size_of::<TriangleBlock>() == 192 && size_of::<SphereBlock>() == 80);
 const _: () = assert!(size_of::<PolygonFace>() == 52);
 
 /// How near to a surface a point may be that the kernels cannot tell from one on it, or beyond it: some roundings of the
 /// distances from the point to the primitive's ends, and where they touch that is the primitive's size. Of polygons the height
 /// above the plane is off by 7u of it, of spheres by 18u of the diameter; both are rounded up.
 pub(super) fn touch_distance(size: f32) -> f32 {
-    32.0 * UNIT_ROUNDOFF * size
+    TOUCHING * size
 }
+
+const TOUCHING: f32 = 32.0 * UNIT_ROUNDOFF;
+
+/// That of a sphere of radius 1, of which the size is the diameter: a power of two, so that this times the radius's square is what
+/// the kernel asks for, with no rounding of its own.
+pub(crate) const TOUCHING_OF_UNIT_SPHERE: f32 = 2.0 * TOUCHING;
 
 /// No triangle is taken to be smaller, as a share of the scene. What the kernel compares with the cube of this is the product
 /// of three lengths, of which f32 would lose digits below 2⁻¹⁰²: a ray that comes so near to so small a triangle is decided in
@@ -119,19 +122,14 @@ impl TriangleBlock {
 
 impl SphereBlock {
     /// Spheres of no surface, which nothing hits.
-    pub(super) const EMPTY: Self = Self {
-        centers: [[0.0; BLOCK]; 3],
-        radii: [f32::NAN; BLOCK],
-        slack: [0.0; BLOCK],
-        ids: [u32::MAX; BLOCK],
-    };
+    pub(super) const EMPTY: Self =
+        Self { centers: [[0.0; BLOCK]; 3], radii: [f32::NAN; BLOCK], ids: [u32::MAX; BLOCK] };
 
     pub(super) fn set(&mut self, lane: usize, center: Vec3, radius: f32, id: u32) {
         for axis in 0..3 {
             self.centers[axis][lane] = center[axis];
         }
         self.radii[lane] = radius;
-        self.slack[lane] = touch_distance(2.0 * radius) * radius;
         self.ids[lane] = id;
     }
 }

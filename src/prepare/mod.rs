@@ -13,7 +13,7 @@ mod scale;
 mod sources;
 mod view;
 
-pub(crate) use blocks::{BLOCK, TriangleBlock, count_there};
+pub(crate) use blocks::{BLOCK, TOUCHING_OF_UNIT_SPHERE, TriangleBlock, count_there};
 pub(crate) use directory::{Directory, material_of};
 pub(crate) use hierarchy::{Hierarchy, Place};
 pub use plan::Plan;

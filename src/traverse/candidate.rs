@@ -18,6 +18,7 @@ use crate::kernel::sphere::{self, Line};
 use crate::kernel::triangle;
 use crate::kernel::{RaySpace, UNIT_ROUNDOFF};
 use crate::lanes::{Mask, Single, Vector};
+use crate::prepare::TOUCHING_OF_UNIT_SPHERE;
 
 /// Where a ray starts.
 #[derive(Clone, Copy)]
@@ -90,18 +91,19 @@ pub(super) fn sphere<F: Single, const DEPARTING: bool>(
     line: &Line<F>,
     padding: F,
     center: Vector<F>,
-    [radius, slack]: [F; 2],
+    radius: F,
     (asked, start): (F::Mask, Start<F>),
 ) -> Option<Candidate<F>> {
     let zero = F::splat(0.0);
-    let meeting = sphere::meet(line, center, radius * radius, zero);
+    let radius_squared = radius * radius;
+    let meeting = sphere::meet(line, center, radius_squared, zero);
     if !((meeting.meets | start.own) & asked).any() {
         return None;
     }
     // cos θ·|d| = half the chord·a / r; half the chord is off by at most twice what that makes of its distance.
     let error = (padding + padding) * radius / (meeting.half_t * line.a);
     let (t, hit) = meeting.nearest(start.t_min);
-    let touches = meeting.touches(line, slack);
+    let touches = meeting.touches(line, F::splat(TOUCHING_OF_UNIT_SPHERE) * radius_squared);
     if !DEPARTING {
         return Some(Candidate { t, error, hit: hit & !touches, unclear: touches });
     }

@@ -145,10 +145,10 @@ fn spheres<F: Single, R: RayLines<F>, const DEPARTING: bool, const ANY: bool>(
     for (lane, id) in asked::<ANY>(hierarchy, &block.ids) {
         let center = Vector::splat(block.centers.map(|column| column[lane]));
         let start = starts.on(id);
-        let sizes = [F::splat(block.radii[lane]), F::splat(block.slack[lane])];
+        let radius = F::splat(block.radii[lane]);
         tested += 1;
         if let Some(candidate) =
-            candidate::sphere::<F, DEPARTING>(&line, padding, center, sizes, (mask, start))
+            candidate::sphere::<F, DEPARTING>(&line, padding, center, radius, (mask, start))
         {
             rays.offer::<DEPARTING, ANY>(hierarchy, &candidate, mask, (Spot::sphere(index, lane), id));
         }

@@ -104,14 +104,14 @@ pub(super) fn spheres<L: Single, const DEPARTING: bool, const ANY: bool>(
     let [x, y, z] = &block.centers;
     for side in Side::each::<L>(&block.ids) {
         let center = Vector::new(side.repeated(x), side.repeated(y), side.repeated(z));
-        let sizes = [side.repeated(&block.radii), side.repeated(&block.slack)];
+        let radius = side.repeated(&block.radii);
         for place in (0..count).step_by(rays_of::<L>()) {
             let (mask, used) = mask_of::<L>(count - place);
             let (line, origin) = rays.line::<L, DEPARTING>(place);
             let start = origin.on::<DEPARTING>(side.ids::<L>());
             counts.spheres.add(L::WIDTH, used * side.there);
             if let Some(candidate) =
-                candidate::sphere::<L, DEPARTING>(&line, origin.padding, center, sizes, (mask, start))
+                candidate::sphere::<L, DEPARTING>(&line, origin.padding, center, radius, (mask, start))
             {
                 let spot = |lane| Spot::sphere(index, lane);
                 side.offer::<L, DEPARTING, ANY>(hierarchy, (rays, place), (&candidate, mask), spot);

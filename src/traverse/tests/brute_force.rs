@@ -93,12 +93,11 @@ impl Query {
                     let block = &hierarchy.spheres[index];
                     for (lane, &id) in block.ids.iter().enumerate().filter(|(_, id)| **id != NOTHING) {
                         let center = Vector::splat(block.centers.map(|column| column[lane]));
-                        let sizes = [block.radii[lane], block.slack[lane]];
                         let found = candidate::sphere::<f32, DEPARTING>(
                             &line,
                             padding,
                             center,
-                            sizes,
+                            block.radii[lane],
                             (true, start(id)),
                         );
                         found.into_iter().for_each(|found| offer(found, Spot::sphere(index, lane)));
