@@ -35,9 +35,24 @@ pub(super) fn build(mut references: Vec<Reference>, costs: &Costs) -> BinaryTree
     let mut forks = vec![Fork::UNUSED; references.len().saturating_sub(1)];
     if !references.is_empty() {
         let spread = Spread::of(&references);
-        grow(&mut references, &mut forks, &spread, 0, costs);
+        let prices = Prices::new(&spread, costs, references.len());
+        grow(&mut references, &mut forks, &spread, 0, &prices);
     }
     BinaryTree { references, forks }
+}
+
+/// What a tree's parts cost.
+struct Prices<'a> {
+    steps: &'a Costs,
+    /// Of a node's being there: an area times a cost.
+    node_memory: f64,
+}
+
+impl<'a> Prices<'a> {
+    fn new(spread: &Spread, costs: &'a Costs, count: usize) -> Self {
+        let node_memory = f64::from(costs.node_memory) * area_of(spread.group.bounds()) / count as f64;
+        Self { steps: costs, node_memory }
+    }
 }
 
 /// Parts a group that is not empty, down to single items or to what stays whole, and returns what it costs.
@@ -46,8 +61,9 @@ fn grow(
     forks: &mut [Fork],
     spread: &Spread,
     depth: u32,
-    costs: &Costs,
+    prices: &Prices<'_>,
 ) -> LeastCosts {
+    let costs = prices.steps;
     let Some((fork, forks)) = forks.split_first_mut() else {
         return LeastCosts::of_leaf(single(&references[0], costs));
     };
@@ -59,7 +75,7 @@ fn grow(
         *fork = Fork { bounds, left: 1, choices: Choices::LEAF };
         return LeastCosts::of_leaf(as_leaf);
     }
-    let as_node = area * f64::from(costs.node);
+    let as_node = area * f64::from(costs.node) + prices.node_memory;
     let deep = is_deep(depth, references.len());
     if let ([one, other], false) = (&*references, deep) {
         let (least_costs, choices) = weigh_pair(single(one, costs), single(other, costs), as_leaf, as_node);
@@ -72,8 +88,8 @@ fn grow(
     let parallel = references.len() >= PARALLEL;
     let (left, right) = references.split_at_mut(middle);
     let (left_forks, right_forks) = forks.split_at_mut(middle - 1);
-    let mut grow_left = || grow(left, left_forks, &halves.left, depth + 1, costs);
-    let mut grow_right = || grow(right, right_forks, &halves.right, depth + 1, costs);
+    let mut grow_left = || grow(left, left_forks, &halves.left, depth + 1, prices);
+    let mut grow_right = || grow(right, right_forks, &halves.right, depth + 1, prices);
     let (left_costs, right_costs) =
         if parallel { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
     let (least_costs, choices) = weigh(&left_costs, &right_costs, as_leaf, as_node);
@@ -109,6 +125,7 @@ mod tests {
     fn the_tree_costs_what_the_choices_promise() {
         let costs = Costs {
             node: 1.5,
+            node_memory: 3.0,
             block: [1.0, 2.0, 4.0],
             room: [4.0, 4.0, 2.0],
             largest_leaf: 6,
@@ -123,8 +140,10 @@ mod tests {
         let mut tree = build(items.collect(), &costs);
         let bounds = tree.forks[0].bounds;
         let spread = Spread::of(&tree.references);
-        let promised = grow(&mut tree.references, &mut tree.forks, &spread, 0, &costs).as_one_child();
-        let cost = collapse(tree, &costs).cost * bounds.half_area();
+        let prices = Prices::new(&spread, &costs, tree.references.len());
+        let promised = grow(&mut tree.references, &mut tree.forks, &spread, 0, &prices).as_one_child();
+        let tree = collapse(tree, &costs);
+        let cost = tree.cost * bounds.half_area() + tree.nodes.len() as f64 * prices.node_memory;
         assert!((cost / promised - 1.0).abs() < 1e-12, "{cost}, promised {promised}");
     }
 }

@@ -10,6 +10,8 @@ use std::ops::Range;
 pub(crate) struct Costs {
     /// Of visiting a wide node.
     pub node: f32,
+    /// Of a wide node's being there, for all rays that meet the root, over the number of items.
+    pub node_memory: f32,
     /// Of testing one block of primitives.
     pub block: [f32; Kind::COUNT],
     /// Weight that a block has room for.

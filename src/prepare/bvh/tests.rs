@@ -5,8 +5,14 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 const KINDS: [Kind; 3] = [Kind::Sphere, Kind::Triangle, Kind::Polygon];
-const COSTS: Costs =
-    Costs { node: 1.0, block: [1.0; 3], room: [4.0, 4.0, 1.0], largest_leaf: 4, stays_whole: [false; 3] };
+const COSTS: Costs = Costs {
+    node: 1.0,
+    node_memory: 0.0,
+    block: [1.0; 3],
+    room: [4.0, 4.0, 1.0],
+    largest_leaf: 4,
+    stays_whole: [false; 3],
+};
 
 fn triangle(low: Vec3, high: Vec3) -> Item {
     Item { bounds: Bounds { low, high }, kind: Kind::Triangle, weight: 1 }
