@@ -50,7 +50,7 @@ struct Prices<'a> {
 
 impl<'a> Prices<'a> {
     fn new(spread: &Spread, costs: &'a Costs, count: usize) -> Self {
-        let node_memory = f64::from(costs.node_memory) * area_of(spread.group.bounds()) / count as f64;
+        let node_memory = f64::from(costs.node_memory) * area_of(spread.group.extent.bounds()) / count as f64;
         Self { steps: costs, node_memory }
     }
 }
@@ -67,7 +67,7 @@ fn grow(
     let Some((fork, forks)) = forks.split_first_mut() else {
         return LeastCosts::of_leaf(single(&references[0], costs));
     };
-    let bounds = spread.group.bounds();
+    let bounds = spread.group.extent.bounds();
     let area = area_of(bounds);
     let fits = references.len() <= costs.largest_leaf.max(1) as usize && spread.group.is_of_one_kind();
     let as_leaf = if fits { area * f64::from(costs.of_weights(spread.group.weights)) } else { f64::INFINITY };

@@ -2,7 +2,8 @@
 //!
 //! All three axes are swept at once, an axis a lane: what costs much in a fork of few items is to weigh the cuts.
 
-use super::group::{CHUNK, Extent, Group, Spread};
+use super::extent::Extent;
+use super::group::{CHUNK, Group, Spread};
 use super::reference::Reference;
 use super::{Costs, Kind};
 use glam::{Mat3A, Vec3A};
@@ -17,7 +18,7 @@ pub(super) struct Places<const BINS: usize> {
 
 impl<const BINS: usize> Places<BINS> {
     pub(super) fn new(middles: Extent) -> Self {
-        Self { low: middles.low, per_length: Vec3A::splat(BINS as f32) / (middles.high - middles.low) }
+        Self { low: middles.low(), per_length: Vec3A::splat(BINS as f32) / middles.size() }
     }
 
     /// Place of a middle along an axis, in bins from the lowest one.
@@ -83,7 +84,7 @@ impl<const BINS: usize> Bins<BINS> {
     #[inline(always)]
     fn fill_chunk(&mut self, places: &Places<BINS>, references: &[Reference]) {
         for reference in references {
-            let one = Extent { low: reference.low(), high: reference.high() };
+            let one = reference.extent();
             let weights = &mut self.weights[reference.kind() as usize];
             let weight = f32::from(reference.weight());
             for (axis, bin) in places.bin(reference).into_iter().enumerate() {
@@ -153,20 +154,17 @@ impl<const BINS: usize> Bins<BINS> {
         let (mut left, mut right) = (Extent::EMPTY, Extent::EMPTY);
         let (mut to_left, mut to_right) = ([0.0; Kind::COUNT], [0.0; Kind::COUNT]);
         for bin in 0..BINS {
-            let Extent { low, high } = self.boxes[bin][cut.axis];
+            let one = self.boxes[bin][cut.axis];
             let goes_left = bin < cut.bin;
-            let is_left = Vec3A::splat(f32::from(u8::from(goes_left))).cmpgt(Vec3A::ZERO);
-            left.low = left.low.min(Vec3A::select(is_left, low, Vec3A::INFINITY));
-            left.high = left.high.max(Vec3A::select(is_left, high, Vec3A::NEG_INFINITY));
-            right.low = right.low.min(Vec3A::select(is_left, Vec3A::INFINITY, low));
-            right.high = right.high.max(Vec3A::select(is_left, Vec3A::NEG_INFINITY, high));
+            left = left.union(one.only_if(goes_left));
+            right = right.union(one.only_if(!goes_left));
             for kind in kinds.clone() {
                 let weight = self.weights[kind][bin][cut.axis];
                 to_left[kind] += if goes_left { weight } else { 0.0 };
                 to_right[kind] += if goes_left { 0.0 } else { weight };
             }
         }
-        let group = |Extent { low, high }, weights: [f32; 3]| Group { low, high, weights: weights.into() };
+        let group = |extent, weights: [f32; 3]| Group { extent, weights: weights.into() };
         [group(left, to_left), group(right, to_right)]
     }
 
@@ -188,7 +186,7 @@ impl Side {
     /// Halves of the surface areas, of lengths times `scale`; a lane an axis.
     #[inline(always)]
     fn half_areas(&self, scale: f32) -> Vec3A {
-        let [x, y, z] = self.boxes.map(|one| (one.high - one.low) * scale);
+        let [x, y, z] = self.boxes.map(|one| one.size() * scale);
         let sizes = Mat3A::from_cols(x, y, z).transpose();
         let [x, y, z] = [sizes.x_axis, sizes.y_axis, sizes.z_axis];
         x * y + y * z + z * x

@@ -1,7 +1,8 @@
 //! What is known of a group of items as a whole.
 
+use super::Kind;
+use super::extent::Extent;
 use super::reference::Reference;
-use super::{Bounds, Kind};
 use glam::{Vec3A, Vec3Swizzles};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -12,28 +13,24 @@ pub(super) const CHUNK: usize = 1 << 15;
 /// What some items cover, and what they weigh.
 #[derive(Clone, Copy)]
 pub(super) struct Group {
-    pub(super) low: Vec3A,
-    pub(super) high: Vec3A,
+    pub(super) extent: Extent,
     /// A lane a [`Kind`].
     pub(super) weights: Vec3A,
 }
 
 impl Group {
-    pub(super) const EMPTY: Self =
-        Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, weights: Vec3A::ZERO };
+    pub(super) const EMPTY: Self = Self { extent: Extent::EMPTY, weights: Vec3A::ZERO };
 
     pub(super) fn of(reference: &Reference) -> Self {
         const LANES: [Vec3A; Kind::COUNT] = [Vec3A::X, Vec3A::Y, Vec3A::Z];
         Self {
-            low: reference.low(),
-            high: reference.high(),
+            extent: reference.extent(),
             weights: LANES[reference.kind() as usize] * f32::from(reference.weight()),
         }
     }
 
     pub(super) fn union(self, other: Self) -> Self {
-        let weights = self.weights + other.weights;
-        Self { low: self.low.min(other.low), high: self.high.max(other.high), weights }
+        Self { extent: self.extent.union(other.extent), weights: self.weights + other.weights }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -54,29 +51,10 @@ impl Group {
         }
     }
 
-    pub(super) fn bounds(&self) -> Bounds {
-        Bounds { low: self.low.into(), high: self.high.into() }
-    }
-
     /// Half of the surface area, of lengths times `scale`.
     pub(super) fn half_area(&self, scale: f32) -> f32 {
-        let size = (self.high - self.low) * scale;
+        let size = self.extent.size() * scale;
         size.dot(size.yzx())
-    }
-}
-
-/// A box of points.
-#[derive(Clone, Copy)]
-pub(super) struct Extent {
-    pub(super) low: Vec3A,
-    pub(super) high: Vec3A,
-}
-
-impl Extent {
-    pub(super) const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
-
-    pub(super) fn union(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 }
 
@@ -103,8 +81,7 @@ impl Spread {
 
     fn of_chunk(references: &[Reference]) -> Self {
         references.iter().fold(Self::EMPTY, |all, reference| {
-            let middle = reference.middle();
-            let middles = Extent { low: middle, high: middle };
+            let middles = Extent::of_point(reference.middle());
             Self { group: all.group.union(Group::of(reference)), middles: all.middles.union(middles) }
         })
     }

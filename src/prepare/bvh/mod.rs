@@ -12,6 +12,7 @@ mod bounds;
 mod choice;
 mod collapse;
 mod cost;
+mod extent;
 mod group;
 mod node;
 mod reference;

@@ -1,16 +1,14 @@
 //! An item on its way into place.
 
+use super::extent::Extent;
 use super::{Bounds, Item, Kind};
-use glam::{Vec3A, Vec4};
+use glam::Vec3A;
 
-/// Two vectors of four lanes, so that a box is loaded as it lies: its corners, and in the fourth lanes, as bits, which item
-/// this is and what it weighs.
-#[repr(C, align(16))]
+/// The lanes of an [`Extent`], so that a box is loaded as it lies; in the fourth lanes, as bits, which item this is and what it
+/// weighs.
+#[repr(C, align(32))]
 #[derive(Clone, Copy)]
-pub(super) struct Reference {
-    low: [f32; 4],
-    high: [f32; 4],
-}
+pub(super) struct Reference([f32; 8]);
 
 const _: () = assert!(size_of::<Reference>() == 32);
 
@@ -23,15 +21,16 @@ impl Reference {
         let Item { bounds: Bounds { low, high }, kind, weight } = item;
         let of_kind = (kind as u32) << 16 | u32::from(weight.max(1));
         let lane = |bits: u32| f32::from_bits(bits | Self::TAG);
-        Self { low: low.extend(lane(index)).to_array(), high: high.extend(lane(of_kind)).to_array() }
+        let (low, high) = ((-low).to_array(), high.to_array());
+        Self([low[0], low[1], low[2], lane(index), high[0], high[1], high[2], lane(of_kind)])
     }
 
     pub(super) fn index(&self) -> u32 {
-        self.low[3].to_bits() & !Self::TAG
+        self.0[3].to_bits() & !Self::TAG
     }
 
     pub(super) fn kind(&self) -> Kind {
-        match self.high[3].to_bits() >> 16 & 3 {
+        match self.0[7].to_bits() >> 16 & 3 {
             0 => Kind::Sphere,
             1 => Kind::Triangle,
             _ => Kind::Polygon,
@@ -40,28 +39,25 @@ impl Reference {
 
     #[expect(clippy::cast_possible_truncation, reason = "the low half is what is meant")]
     pub(super) fn weight(&self) -> u16 {
-        (self.high[3].to_bits() & u32::from(u16::MAX)) as u16
+        (self.0[7].to_bits() & u32::from(u16::MAX)) as u16
     }
 
-    pub(super) fn low(&self) -> Vec3A {
-        Vec3A::from_vec4(Vec4::from_array(self.low))
-    }
-
-    pub(super) fn high(&self) -> Vec3A {
-        Vec3A::from_vec4(Vec4::from_array(self.high))
+    #[inline(always)]
+    pub(super) fn extent(&self) -> Extent {
+        Extent::of_ends(&self.0)
     }
 
     pub(super) fn bounds(&self) -> Bounds {
-        Bounds { low: self.low().into(), high: self.high().into() }
+        self.extent().bounds()
     }
 
-    /// The middle of its box, halved before the sum so that it does not overflow.
+    #[inline(always)]
     pub(super) fn middle(&self) -> Vec3A {
-        0.5 * self.low() + 0.5 * self.high()
+        self.extent().middle()
     }
 
     /// The same along one axis.
     pub(super) fn middle_along(&self, axis: usize) -> f32 {
-        0.5 * self.low[axis] + 0.5 * self.high[axis]
+        0.5 * self.0[4 + axis] - 0.5 * self.0[axis]
     }
 }

@@ -2,10 +2,10 @@
 //! Volume Hierarchies", 2007, along the three axes and also by kind.
 
 use super::bins::{Bins, Places};
-use super::group::{Extent, Group, Spread};
+use super::extent::Extent;
+use super::group::{Group, Spread};
 use super::reference::Reference;
 use super::{Costs, Kind};
-use glam::Vec3A;
 
 /// A group parted in two: how many items the first half has, and what is known of both.
 pub(super) struct Halves {
@@ -35,9 +35,9 @@ pub(super) fn part(references: &mut [Reference], spread: &Spread, costs: &Costs)
 /// Likewise, into two of the same size, or of sizes that differ by 1.
 pub(super) fn halve(references: &mut [Reference], spread: &Spread) -> Halves {
     let half = references.len() / 2;
-    let extent = spread.middles.high - spread.middles.low;
-    if extent.max_element() > 0.0 {
-        let axis = extent.max_position();
+    let size = spread.middles.size();
+    if size.max_element() > 0.0 {
+        let axis = size.max_position();
         let along = |reference: &Reference| reference.middle_along(axis);
         references.select_nth_unstable_by(half, |one, other| along(one).total_cmp(&along(other)));
     }
@@ -49,7 +49,7 @@ fn part_by_bins<const BINS: usize>(references: &mut [Reference], spread: &Spread
     let mut bins = Bins::empty();
     bins.fill(&places, references);
     // The largest extent becomes 1, so that no area overflows.
-    let scale = (spread.group.high - spread.group.low).max_element().recip().min(f32::MAX);
+    let scale = spread.group.extent.size().max_element().recip().min(f32::MAX);
     let cut = bins.cheapest_cut(spread, scale, costs);
     if !spread.group.is_of_one_kind() {
         let (cost, kind) = cheapest_kinds(&of_kinds(references), scale, costs);
@@ -83,21 +83,18 @@ fn partition(
     goes_left: impl Fn(&Reference) -> bool,
 ) -> (usize, Extent, Extent) {
     let mut left = 0;
-    let (mut low, mut high) = ([Vec3A::INFINITY; 2], [Vec3A::NEG_INFINITY; 2]);
+    let (mut left_middles, mut right_middles) = (Extent::EMPTY, Extent::EMPTY);
     for index in 0..references.len() {
         let reference = references[index];
         let moves = goes_left(&reference);
-        let middle = reference.middle();
-        let is_left = Vec3A::splat(f32::from(u8::from(moves))).cmpgt(Vec3A::ZERO);
-        low[0] = low[0].min(Vec3A::select(is_left, middle, Vec3A::INFINITY));
-        high[0] = high[0].max(Vec3A::select(is_left, middle, Vec3A::NEG_INFINITY));
-        low[1] = low[1].min(Vec3A::select(is_left, Vec3A::INFINITY, middle));
-        high[1] = high[1].max(Vec3A::select(is_left, Vec3A::NEG_INFINITY, middle));
+        let middle = Extent::of_point(reference.middle());
+        left_middles = left_middles.union(middle.only_if(moves));
+        right_middles = right_middles.union(middle.only_if(!moves));
         references[index] = references[left];
         references[left] = reference;
         left += usize::from(moves);
     }
-    (left, Extent { low: low[0], high: high[0] }, Extent { low: low[1], high: high[1] })
+    (left, left_middles, right_middles)
 }
 
 fn of_kinds(references: &[Reference]) -> [Group; Kind::COUNT] {
