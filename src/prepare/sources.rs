@@ -47,10 +47,10 @@ impl Sources<'_> {
     fn sphere_bounds(&self, index: usize) -> Bounds {
         let sphere = &self.geometry.spheres[index];
         let (center, radius) = (self.scale.position(sphere.center), self.scale.length(sphere.radius));
-        // Rounded outward: the sum of centre and radius may round to the wrong side of the surface.
-        let low = (center - Vec3::splat(radius)).map(f32::next_down);
-        let high = (center + Vec3::splat(radius)).map(f32::next_up);
-        Bounds { low, high }
+        // Outward by a rounding or two: the sum of centre and radius may round to the wrong side of the surface.
+        let (low, high) = (center - radius, center + radius);
+        let rounding = |end: Vec3| end.abs() * f32::EPSILON + f32::MIN_POSITIVE;
+        Bounds { low: low - rounding(low), high: high + rounding(high) }
     }
 
     fn corners(&self, vertices: [u32; 3]) -> [Vec3; 3] {

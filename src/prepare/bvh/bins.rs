@@ -21,29 +21,30 @@ impl<const BINS: usize> Places<BINS> {
         Self { low: middles.low(), per_length: Vec3A::splat(BINS as f32) / middles.size() }
     }
 
-    /// Place of a middle along an axis, in bins from the lowest one.
+    /// Place of a middle along an axis, in bins, of which the lowest is number `BINS`: for numbers from `BINS` to twice that, which
+    /// have one exponent, the bin is the first bits of the mantissa.
     pub(super) fn along(&self, axis: usize) -> impl Fn(&Reference) -> f32 + use<BINS> {
         let (low, per_length) = (self.low[axis], self.per_length[axis]);
-        move |reference| (reference.middle_along(axis) - low) * per_length
+        move |reference| (reference.middle_along(axis) - low) * per_length + BINS as f32
     }
 
     /// The bin of each axis; 0 along an axis on which all middles are in one place, which makes NaN.
     #[inline(always)]
     fn bin(&self, reference: &Reference) -> [usize; 3] {
         const { assert!(BINS.is_power_of_two()) };
-        // Numbers from 2²³ to 2²⁴ hold integers in their low bits: sooner had than by a conversion that saturates.
-        const INTEGERS: f32 = (1 << 23) as f32;
-        let place = (reference.middle() - self.low) * self.per_length;
-        let place = Vec3A::select(place.cmpge(Vec3A::ZERO), place, Vec3A::ZERO);
-        let bin = place.min(Vec3A::splat((BINS - 1) as f32)).trunc() + INTEGERS;
-        bin.to_array().map(|bin| bin.to_bits() as usize & (BINS - 1))
+        let (first, beyond) = (BINS as f32, (2 * BINS) as f32);
+        let place = (reference.middle() - self.low) * self.per_length + first;
+        let place = Vec3A::select(place.cmpge(Vec3A::splat(first)), place, Vec3A::splat(first));
+        let place = place.min(Vec3A::splat(beyond.next_down()));
+        place.to_array().map(|place| (place.to_bits() >> (23 - BINS.ilog2())) as usize & (BINS - 1))
     }
 }
 
 /// What is in each bin of each axis.
 #[derive(Clone)]
 pub(super) struct Bins<const BINS: usize> {
-    boxes: [[Extent; 3]; BINS],
+    /// By axis and bin.
+    boxes: [[Extent; BINS]; 3],
     /// By kind and bin; a lane an axis.
     weights: [[[f32; 4]; BINS]; Kind::COUNT],
 }
@@ -68,37 +69,53 @@ struct Side {
 impl<const BINS: usize> Bins<BINS> {
     #[inline(always)]
     pub(super) fn empty() -> Self {
-        Self { boxes: [[Extent::EMPTY; 3]; BINS], weights: [[[0.0; 4]; BINS]; Kind::COUNT] }
+        Self { boxes: [[Extent::EMPTY; BINS]; 3], weights: [[[0.0; 4]; BINS]; Kind::COUNT] }
     }
 
     /// Adds items, many in parallel.
     #[inline(always)]
-    pub(super) fn fill(&mut self, places: &Places<BINS>, references: &[Reference]) {
+    pub(super) fn fill(&mut self, places: &Places<BINS>, references: &[Reference], group: &Group) {
+        let of_units = group.kind_of_units(references.len());
         if references.len() > CHUNK {
-            self.fill_parallel(places, references);
+            self.fill_parallel(places, references, of_units);
         } else {
-            self.fill_chunk(places, references);
+            self.fill_chunk(places, references, of_units);
+        }
+    }
+
+    /// `of_units`: the kind of all items, if they are of one and weigh 1 each.
+    #[inline(always)]
+    fn fill_chunk(&mut self, places: &Places<BINS>, references: &[Reference], of_units: Option<usize>) {
+        if let Some(kind) = of_units {
+            self.fill_weighed(places, references, |_| (kind, 1.0));
+        } else {
+            let weigh = |item: &Reference| (item.kind() as usize, f32::from(item.weight()));
+            self.fill_weighed(places, references, weigh);
         }
     }
 
     #[inline(always)]
-    fn fill_chunk(&mut self, places: &Places<BINS>, references: &[Reference]) {
+    fn fill_weighed(
+        &mut self,
+        places: &Places<BINS>,
+        references: &[Reference],
+        weigh: impl Fn(&Reference) -> (usize, f32),
+    ) {
         for reference in references {
             let one = reference.extent();
-            let weights = &mut self.weights[reference.kind() as usize];
-            let weight = f32::from(reference.weight());
+            let (kind, weight) = weigh(reference);
             for (axis, bin) in places.bin(reference).into_iter().enumerate() {
-                self.boxes[bin][axis] = self.boxes[bin][axis].union(one);
-                weights[bin][axis] += weight;
+                self.boxes[axis][bin] = self.boxes[axis][bin].union(one);
+                self.weights[kind][bin][axis] += weight;
             }
         }
     }
 
     #[inline(never)]
-    fn fill_parallel(&mut self, places: &Places<BINS>, references: &[Reference]) {
+    fn fill_parallel(&mut self, places: &Places<BINS>, references: &[Reference], of_units: Option<usize>) {
         let chunks = references.par_chunks(CHUNK).map(|chunk| {
             let mut bins = Self::empty();
-            bins.fill_chunk(places, chunk);
+            bins.fill_chunk(places, chunk, of_units);
             bins
         });
         for part in chunks.collect::<Vec<Self>>() {
@@ -154,7 +171,7 @@ impl<const BINS: usize> Bins<BINS> {
         let (mut left, mut right) = (Extent::EMPTY, Extent::EMPTY);
         let (mut to_left, mut to_right) = ([0.0; Kind::COUNT], [0.0; Kind::COUNT]);
         for bin in 0..BINS {
-            let one = self.boxes[bin][cut.axis];
+            let one = self.boxes[cut.axis][bin];
             let goes_left = bin < cut.bin;
             left = left.union(one.only_if(goes_left));
             right = right.union(one.only_if(!goes_left));
@@ -170,8 +187,8 @@ impl<const BINS: usize> Bins<BINS> {
 
     #[inline(always)]
     fn add_to(&self, side: &mut Side, bin: usize, kinds: Range<usize>) {
-        for (all, one) in side.boxes.iter_mut().zip(&self.boxes[bin]) {
-            *all = all.union(*one);
+        for (all, one) in side.boxes.iter_mut().zip(&self.boxes) {
+            *all = all.union(one[bin]);
         }
         for kind in kinds {
             let [x, y, z, _] = self.weights[kind][bin];

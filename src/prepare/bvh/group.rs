@@ -51,6 +51,12 @@ impl Group {
         }
     }
 
+    /// The kind of all items, if they are of one and weigh 1 each, where so many weigh what this group does.
+    pub(super) fn kind_of_units(&self, count: usize) -> Option<usize> {
+        let kinds = self.kinds();
+        (kinds.len() == 1 && self.weights[kinds.start] == count as f32).then_some(kinds.start)
+    }
+
     /// Half of the surface area, of lengths times `scale`.
     pub(super) fn half_area(&self, scale: f32) -> f32 {
         let size = self.extent.size() * scale;

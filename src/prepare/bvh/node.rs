@@ -47,31 +47,30 @@ impl Node {
     /// Says in which order rays meet the children, once all are set: that of their middles along the octant's diagonal, so the
     /// opposite octant has the reverse.
     pub(super) fn set_orders(&mut self) {
-        let used = self.children.iter().filter(|&&child| child != Child::EMPTY).count();
+        let used = self.children.iter().map(|&child| u32::from(child != Child::EMPTY)).sum();
         let mut middles = [[0.0; WIDTH]; 3];
         for (axis, middles) in middles.iter_mut().enumerate() {
-            for (slot, middle) in middles.iter_mut().enumerate().take(used) {
+            for (slot, middle) in middles.iter_mut().enumerate() {
                 *middle = 0.5 * self.low[axis][slot] + 0.5 * self.high[axis][slot];
             }
         }
         let [x, y, z] = &middles;
         for octant in 0..4 {
             let sign = |axis: usize| if octant >> axis & 1 == 1 { -1.0 } else { 1.0 };
-            let mut along = [0.0; WIDTH];
+            // Slots that are not used come last.
+            let mut along = [f32::INFINITY; WIDTH];
             for slot in 0..WIDTH {
-                along[slot] = sign(0) * x[slot] + sign(1) * y[slot] + z[slot];
+                let is_used = slot < used as usize;
+                along[slot] =
+                    if is_used { sign(0) * x[slot] + sign(1) * y[slot] + z[slot] } else { along[slot] };
             }
-            let (mut slots, mut reverse) = ([0; WIDTH], [0; WIDTH]);
-            for slot in 0..used {
-                // Of equals the one before is first.
-                let lies_before = |other: usize| {
-                    along[other] < along[slot] || (along[other] == along[slot] && other < slot)
-                };
-                let rank = (0..used).map(|other| usize::from(lies_before(other))).sum::<usize>();
-                (slots[rank], reverse[used - 1 - rank]) = (slot, slot);
+            let ranks = ranks(&along);
+            self.orders[octant] = Order::of_ranks(&ranks, used);
+            let mut reverse = [0; WIDTH];
+            for slot in 0..WIDTH {
+                reverse[slot] = (used + 7 - ranks[slot]) & 7;
             }
-            self.orders[octant] = Order::new(&slots[..used]);
-            self.orders[7 - octant] = Order::new(&reverse[..used]);
+            self.orders[7 - octant] = Order::of_ranks(&reverse, used);
         }
     }
 
@@ -81,15 +80,31 @@ impl Node {
     }
 }
 
+/// How many numbers lie before each; of equals the one before is first.
+fn ranks(numbers: &[f32; WIDTH]) -> [u32; WIDTH] {
+    let mut ranks = [0; WIDTH];
+    for (place, &other) in numbers.iter().enumerate() {
+        for slot in 0..WIDTH {
+            let (is_less, is_equal) = (other < numbers[slot], other == numbers[slot]);
+            ranks[slot] += u32::from(is_less | (is_equal & (place < slot)));
+        }
+    }
+    ranks
+}
+
 /// Slots of a node that lead somewhere, in an order: each in 3 bits, the first lowest; how many there are in the 4 high bits.
 #[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Order(u32);
 
 impl Order {
-    fn new(slots: &[usize]) -> Self {
-        let list = slots.iter().rev().fold(0, |list, &slot| list << 3 | super::word(slot));
-        Self(super::word(slots.len()) << 28 | list)
+    /// Of the first `used` slots, by their ranks.
+    fn of_ranks(ranks: &[u32; WIDTH], used: u32) -> Self {
+        let mut list = 0;
+        for (slot, rank) in (0..).zip(ranks) {
+            list |= if slot < used { slot << (3 * (rank & 7)) } else { 0 };
+        }
+        Self(used << 28 | list)
     }
 
     /// How many slots there are.

@@ -47,7 +47,7 @@ pub(super) fn halve(references: &mut [Reference], spread: &Spread) -> Halves {
 fn part_by_bins<const BINS: usize>(references: &mut [Reference], spread: &Spread, costs: &Costs) -> Halves {
     let places = Places::<BINS>::new(spread.middles);
     let mut bins = Bins::empty();
-    bins.fill(&places, references);
+    bins.fill(&places, references, &spread.group);
     // The largest extent becomes 1, so that no area overflows.
     let scale = spread.group.extent.size().max_element().recip().min(f32::MAX);
     let cut = bins.cheapest_cut(spread, scale, costs);
@@ -62,7 +62,7 @@ fn part_by_bins<const BINS: usize>(references: &mut [Reference], spread: &Spread
     if cut.bin == 0 {
         return halve(references, spread);
     }
-    let (place, start) = (places.along(cut.axis), cut.bin as f32);
+    let (place, start) = (places.along(cut.axis), (BINS + cut.bin) as f32);
     let (middle, left, right) = partition(references, |reference| {
         // Where the middles are so close together that a place is not a number, its bin is the first.
         let goes_right = place(reference) >= start;
