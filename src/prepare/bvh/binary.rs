@@ -5,9 +5,10 @@ use super::group::{Group, Spread};
 use super::reference::Reference;
 use super::split::{Halves, halve, part};
 use super::{Bounds, Costs, DEPTH_LIMIT, word};
+use rayon::prelude::*;
 
 /// Above so many items the two halves are built in parallel.
-const PARALLEL: usize = 4096;
+const PARALLEL: usize = 1024;
 
 /// A place where a group of items parts in two. A group of n items parts in at most n − 1 places, itself and those within
 /// its halves, so the places of every group are known before it is built: its own first, then those of the left half, then
@@ -32,7 +33,9 @@ pub(super) struct BinaryTree {
 }
 
 pub(super) fn build(mut references: Vec<Reference>, costs: &Costs) -> BinaryTree {
-    let mut forks = vec![Fork::UNUSED; references.len().saturating_sub(1)];
+    // On all threads, since memory that is touched for the first time has to be fetched from the system.
+    let places = 0..references.len().saturating_sub(1);
+    let mut forks: Vec<Fork> = places.into_par_iter().map(|_| Fork::UNUSED).collect();
     if !references.is_empty() {
         let spread = Spread::of(&references);
         let prices = Prices::new(&spread, costs, references.len());
