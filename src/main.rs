@@ -1,6 +1,11 @@
 //! The program: maps the result of a command to an exit code, nothing else.
 
+mod huge_pages;
+
 use std::process::ExitCode;
+
+#[global_allocator]
+static ALLOCATOR: huge_pages::HugePages = huge_pages::HugePages;
 
 fn main() -> ExitCode {
     // Before all else, while nothing has run that this machine may not have the instructions for.
