@@ -17,17 +17,28 @@ pub(super) fn write(image: &Image, depth: BitDepth, writer: &mut impl Write) -> 
     let written = match depth {
         BitDepth::Eight => {
             let table = Codes::of_8_bits();
-            let code = |&channel: &f32| u8::try_from(table.code(channel)).unwrap_or(u8::MAX);
-            let codes: Vec<u8> = channels.par_iter().map(code).collect();
+            let codes = coded(channels, |channel| u8::try_from(table.code(channel)).unwrap_or(u8::MAX));
             encoder.write_image(&codes, width, height, ExtendedColorType::Rgb8)
         }
         BitDepth::Sixteen => {
             let table = Codes::of_16_bits();
-            let codes: Vec<u16> = channels.par_iter().map(|&channel| table.code(channel)).collect();
+            let codes = coded(channels, |channel| table.code(channel));
             encoder.write_image(bytemuck::cast_slice(&codes), width, height, ExtendedColorType::Rgb16)
         }
     };
     written.map_err(io::Error::other)
+}
+
+/// Many side by side, which is sooner done than one after the other into a list that grows.
+fn coded<T: Copy + Default + Send>(channels: &[f32], code: impl Fn(f32) -> T + Sync) -> Vec<T> {
+    const AT_ONCE: usize = 1 << 14;
+    let mut codes = vec![T::default(); channels.len()];
+    codes.par_chunks_mut(AT_ONCE).zip(channels.par_chunks(AT_ONCE)).for_each(|(codes, channels)| {
+        for (to, &channel) in codes.iter_mut().zip(channels) {
+            *to = code(channel);
+        }
+    });
+    codes
 }
 
 /// sRGB values 0–1; an alpha channel is left aside, grey is spread over the channels.

@@ -28,12 +28,14 @@ impl SamplePattern {
     /// below it. The pixel is counted from the full image's top left.
     #[must_use]
     pub fn position(&self, x: u32, y: u32, s: u32) -> [f64; 2] {
+        // A single sample lies in the middle, whatever the pattern: a picture without antialiasing is not noisy.
+        if self.n == 1 {
+            return [0.5, 0.5];
+        }
         let n = f64::from(self.n);
         let (p, q) = (f64::from(s % self.n), f64::from(s / self.n));
         let random = |dimension| random_unit([self.seed, x, y, s, dimension]);
         match self.sampling {
-            // A single sample lies in the middle, whatever the pattern: a picture without antialiasing is not noisy.
-            _ if self.n == 1 => [0.5, 0.5],
             Sampling::Regular => [(p + 0.5) / n, (q + 0.5) / n],
             Sampling::Random => [random(0), random(1)],
             Sampling::Jittered => [(p + random(0)) / n, (q + random(1)) / n],

@@ -22,13 +22,14 @@ pub(super) fn generate<D: Double>(
     let [u, v, w] = basis;
     let eye = Vector::splat(view.eye.to_array());
     let one = D::splat(1.0);
+    let last_row = view.pixels[1] - 1.0;
     for (first, chunk) in (0..).step_by(D::WIDTH).zip(samples.chunks(D::WIDTH)) {
         lanes.add(D::WIDTH, chunk.len());
         let mut points = [[0.0; 8]; 2];
         for (lane, sample) in chunk.iter().enumerate() {
             let [xi, eta] = pattern.position(sample.x, sample.y, sample.s);
             points[0][lane] = f64::from(sample.x) + xi;
-            points[1][lane] = f64::from(sample.row_from_bottom) + eta;
+            points[1][lane] = (last_row - f64::from(sample.y)) + eta;
         }
         let [x, y] = [0, 1].map(|axis| {
             D::splat(view.low[axis])

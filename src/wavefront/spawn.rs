@@ -266,7 +266,12 @@ impl Spawning<'_> {
             numbers.row[first + lane] = if bits >> lane & 1 == 1 { number } else { NOTHING };
         }
         for (to, share) in numbers.share.iter_mut().zip(&children.share) {
-            to[run.clone()].copy_from_slice(&share[..count]);
+            let to = &mut to[first..];
+            match to.first_chunk_mut() {
+                // What lies behind is written over later; a length that is known beforehand is sooner copied.
+                Some(to) => *to = *share,
+                None => to[..count].copy_from_slice(&share[..count]),
+            }
         }
 
         let packing = Packing::new(bits);

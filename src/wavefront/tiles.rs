@@ -9,8 +9,6 @@ pub(super) struct Sample {
     pub(super) x: u32,
     /// Row of the full image from the top.
     pub(super) y: u32,
-    /// Row of the full image from the bottom.
-    pub(super) row_from_bottom: u32,
     /// Number of the sample within its pixel.
     pub(super) s: u32,
     /// Number of the pixel within its tile.
@@ -21,7 +19,6 @@ pub(super) struct Sample {
 #[derive(Clone, Debug)]
 pub(super) struct Tiles {
     region: Region,
-    image_height: u32,
     samples_per_pixel: u32,
     /// A power of two, pixels.
     side: u32,
@@ -45,12 +42,12 @@ impl Tiles {
     const LARGEST_SIDE: u32 = 64;
 
     /// Tiles with about as many samples as a batch has rows.
-    pub(super) fn new(region: Region, image_height: u32, samples_per_pixel: u32, batch: usize) -> Self {
+    pub(super) fn new(region: Region, samples_per_pixel: u32, batch: usize) -> Self {
         let pixels = (batch as u64 / u64::from(samples_per_pixel)).max(1);
         let side: u32 = 1 << (pixels.ilog2() / 2).min(Self::LARGEST_SIDE.ilog2());
         let curve = (0..side * side).map(|place| [every_other_bit(place), every_other_bit(place >> 1)]);
         let across = u64::from(region.width().div_ceil(side));
-        Self { region, image_height, samples_per_pixel, side, across, curve: curve.collect() }
+        Self { region, samples_per_pixel, side, across, curve: curve.collect() }
     }
 
     pub(super) fn count(&self) -> u64 {
@@ -76,17 +73,34 @@ impl Samples<'_> {
     /// Puts in the next samples, as many as fit; none once all are done.
     pub(super) fn fill(&mut self, batch: &mut Vec<Sample>, room: usize) {
         batch.clear();
+        if self.tiles.samples_per_pixel == 1 && self.tile.pixels() == self.tiles.curve.len() as u64 {
+            return self.fill_with_pixels(batch, room);
+        }
         while batch.len() < room {
             let Some((mut s, [dx, dy])) = self.begun.take().or_else(|| self.next_pixel()) else { return };
             let (x, y) = (self.tile.x0 + dx, self.tile.y0 + dy);
-            let row_from_bottom = self.tiles.image_height - 1 - y;
             let pixel = dy * self.tile.width() + dx;
             while s < self.tiles.samples_per_pixel && batch.len() < room {
-                batch.push(Sample { x, y, row_from_bottom, s, pixel });
+                batch.push(Sample { x, y, s, pixel });
                 s += 1;
             }
             self.begun = (s < self.tiles.samples_per_pixel).then_some((s, [dx, dy]));
         }
+    }
+
+    /// Of a whole tile with one sample a pixel, which takes no counting and no looking at the edge.
+    fn fill_with_pixels(&mut self, batch: &mut Vec<Sample>, room: usize) {
+        let left = self.pixels.as_slice();
+        let (now, later) = left.split_at(room.min(left.len()));
+        let Region { x0, y0, .. } = self.tile;
+        let side = self.tiles.side;
+        batch.extend(now.iter().map(|&[dx, dy]| Sample {
+            x: x0 + dx,
+            y: y0 + dy,
+            s: 0,
+            pixel: dy * side + dx,
+        }));
+        self.pixels = later.iter();
     }
 
     fn next_pixel(&mut self) -> Option<(u32, [u32; 2])> {
@@ -107,7 +121,7 @@ mod tests {
 
     #[test]
     fn runs_of_a_tile_are_squares() {
-        let tiles = Tiles::new(Region::whole(64, 64), 64, 1, 4096);
+        let tiles = Tiles::new(Region::whole(64, 64), 1, 4096);
         let (mut left, mut run) = (tiles.samples(tiles.tile(0)), Vec::new());
         for square in 0..64 {
             left.fill(&mut run, 64);
@@ -129,7 +143,7 @@ mod tests {
             (Region { x0: 0, y0: 0, x1: 9, y1: 1 }, 16, 256),
             (Region { x0: 7, y0: 2, x1: 8, y1: 3 }, 4096, 1024),
         ] {
-            let tiles = Tiles::new(region, 100, samples, batch);
+            let tiles = Tiles::new(region, samples, batch);
             let mut seen = HashSet::new();
             for index in 0..tiles.count() {
                 let tile = tiles.tile(index);

@@ -31,7 +31,7 @@ pub(crate) struct TileGrid {
 
 impl TileGrid {
     pub(crate) fn new(region: Region, prepared: &Prepared<'_>, batch: usize) -> Self {
-        Self { tiles: Tiles::new(region, prepared.scene.image.height, prepared.plan.samples, batch) }
+        Self { tiles: Tiles::new(region, prepared.plan.samples, batch) }
     }
 
     pub(crate) fn count(&self) -> u64 {
