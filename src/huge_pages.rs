@@ -1,4 +1,4 @@
-//! Large allocations on pages of 2 MiB, where Linux gives such to who asks for them.
+//! Large allocations on huge pages (of 2 MiB where others are of 4 KiB), which Linux gives to who asks for them.
 //!
 //! A picture of 2048 × 2048 is 12,288 pages of 4 KiB otherwise, each of which is fetched from the system when it is first touched,
 //! and a hierarchy's lines are looked up in tables that the processor has no room for.
@@ -9,7 +9,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 /// The system's allocator, which is asked for huge pages under what is large.
 pub(crate) struct HugePages;
 
-/// No allocation below gets any: it would lie across two such pages at most, and fill neither.
+/// From here on a page of 2 MiB lies within, wherever the allocation begins.
 const LARGE: usize = 4 << 20;
 
 // SAFETY: all is done by `System`; advice changes no byte of what it returns.
@@ -35,21 +35,20 @@ unsafe impl GlobalAlloc for HugePages {
     }
 }
 
-/// Asks for huge pages under the whole small pages of an allocation that is large. A system that has none says so, which does
-/// no harm.
+/// Asks for huge pages under an allocation that is large.
 #[inline]
 fn advised(memory: *mut u8, size: usize) -> *mut u8 {
-    #[cfg(target_os = "linux")]
     if size >= LARGE && !memory.is_null() {
         advise(memory, size);
     }
     memory
 }
 
-#[cfg(target_os = "linux")]
+/// A system that has no such pages says so, which does no harm.
 #[cold]
 fn advise(memory: *mut u8, size: usize) {
-    const PAGE: usize = 4096;
+    /// Some whole pages, of whatever size a system's small pages are.
+    const PAGE: usize = 1 << 16;
     let before = memory.align_offset(PAGE);
     let length = (size - before) / PAGE * PAGE;
     // SAFETY: the range lies within one allocation, and this advice leaves its contents as they are.

@@ -1,9 +1,11 @@
 //! The program: maps the result of a command to an exit code, nothing else.
 
+#[cfg(target_os = "linux")]
 mod huge_pages;
 
 use std::process::ExitCode;
 
+#[cfg(target_os = "linux")]
 #[global_allocator]
 static ALLOCATOR: huge_pages::HugePages = huge_pages::HugePages;
 

@@ -24,7 +24,7 @@ pub(crate) use pack::{Arrangement, Packing};
 pub(crate) use prefetch::prefetch;
 pub(crate) use records::least_of_each;
 pub(crate) use vector::Vector;
-/// Eight lanes by name, for what has that many at any width.
+/// Eight lanes by name, for what is as wide whatever the width that rays go in.
 pub(crate) use wide::f32x8 as EightSingles;
 pub(crate) use widths::Job;
 pub use widths::Width;

@@ -1,7 +1,8 @@
 //! The power of two that brings a scene to the size of 1.
 
-use crate::scene::{Projection, Scene};
-use glam::{DVec3, Vec3};
+use crate::scene::{Geometry, Projection, Scene};
+use glam::Vec3;
+use rayon::prelude::*;
 
 /// What every length of a scene is multiplied by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +14,6 @@ pub(crate) struct Scale {
 impl Scale {
     /// Brings the largest coordinate of the geometry and the eye into [1, 2).
     pub(crate) fn of(scene: &Scene) -> Self {
-        let geometry = scene.geometry.bounds().map_or(DVec3::ZERO, |(low, high)| low.abs().max(high.abs()));
         let window = match scene.camera.projection {
             Projection::OrthographicHeight { height } => f64::from(height),
             Projection::OrthographicWindow { window } => {
@@ -23,7 +23,7 @@ impl Scale {
             Projection::PerspectiveAngle { .. } | Projection::PerspectiveWindow { .. } => 0.0,
         };
         let eye = scene.camera.eye.as_dvec3().abs().max_element();
-        Self::bringing_to_one(geometry.max_element().max(eye).max(window))
+        Self::bringing_to_one(largest_coordinate(&scene.geometry).max(eye).max(window))
     }
 
     fn bringing_to_one(largest: f64) -> Self {
@@ -44,6 +44,16 @@ impl Scale {
     pub(crate) fn length(self, world: f32) -> f32 {
         world * self.factor
     }
+}
+
+/// Largest magnitude of a coordinate of what there is, on the threads of the current pool.
+fn largest_coordinate(geometry: &Geometry) -> f64 {
+    let of_spheres = geometry.spheres.par_iter().map(|sphere| {
+        let farthest = sphere.center.as_dvec3().abs() + f64::from(sphere.radius);
+        farthest.max_element()
+    });
+    let of_vertices = geometry.vertices.par_iter().map(|vertex| f64::from(vertex.abs().max_element()));
+    of_spheres.reduce(|| 0.0, f64::max).max(of_vertices.reduce(|| 0.0, f64::max))
 }
 
 #[cfg(test)]

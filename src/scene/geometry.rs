@@ -2,7 +2,6 @@
 
 use super::MaterialId;
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
 use thiserror::Error;
@@ -216,18 +215,12 @@ impl Geometry {
     /// Smallest and largest coordinates of everything, or `None` where there is nothing.
     #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        type Ends = (DVec3, DVec3);
-        let nothing = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let joined = |(low, high): Ends, (less, more): Ends| (low.min(less), high.max(more));
-        let of_sphere = |sphere: &Sphere| {
+        let spheres = self.spheres.iter().flat_map(|sphere| {
             let (center, radius) = (sphere.center.as_dvec3(), DVec3::splat(f64::from(sphere.radius)));
-            (center - radius, center + radius)
-        };
-        let of_vertex = |vertex: &Vec3| (vertex.as_dvec3(), vertex.as_dvec3());
-        let spheres = self.spheres.par_iter().map(of_sphere).reduce(nothing, joined);
-        let vertices = self.vertices.par_iter().map(of_vertex).reduce(nothing, joined);
-        let (low, high) = joined(spheres, vertices);
-        (low.x <= high.x).then_some((low, high))
+            [center - radius, center + radius]
+        });
+        let vertices = self.vertices.iter().map(|vertex| vertex.as_dvec3());
+        spheres.chain(vertices).fold(None, widened)
     }
 
     fn take_id(&mut self) -> Result<PrimitiveId, GeometryProblem> {

@@ -268,7 +268,7 @@ impl Spawning<'_> {
         for (to, share) in numbers.share.iter_mut().zip(&children.share) {
             let to = &mut to[first..];
             match to.first_chunk_mut() {
-                // What lies behind is written over later; a length that is known beforehand is sooner copied.
+                // What lies behind is written over later, or is no row; a length that is known beforehand is sooner copied.
                 Some(to) => *to = *share,
                 None => to[..count].copy_from_slice(&share[..count]),
             }

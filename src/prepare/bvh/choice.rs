@@ -5,7 +5,7 @@
 //! many for its left half and so many for its right. The cheapest way follows from those of its halves:
 //!
 //! - over i children: Dᵢ = min over 0 < k < i of C_k(left) + C_(i−k)(right)
-//! - as one child: C₁ = min(area · cost of the leaf, area · cost of visiting a node + D₈)
+//! - as one child: C₁ = min(area · cost of the leaf, area · cost of visiting a node + that of its memory + D₈)
 //! - as up to i children: Cᵢ = min(Dᵢ, Cᵢ₋₁)
 
 use super::WIDTH;
@@ -74,7 +74,7 @@ pub(super) fn weigh_pair(left: f64, right: f64, as_leaf: f64, as_node: f64) -> (
 }
 
 /// The cheapest ways for a group, from those of its halves, from what it costs as a leaf, infinity if it may not be one, and
-/// from what visiting it as a node costs.
+/// from what visiting it as a node and having that costs.
 pub(super) fn weigh(
     left: &LeastCosts,
     right: &LeastCosts,

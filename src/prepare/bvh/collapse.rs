@@ -135,7 +135,7 @@ impl Writer<'_> {
         };
         let (left_runs, right_runs) = runs.split_at(runs.iter().take_while(is_left).count());
         let (left, right) = written.split_at_mut(left_runs.len());
-        let mut behind = Part::with_room_for(all);
+        let mut behind = Part::with_room_for(right_runs.iter().map(|run| run.count).sum());
         rayon::join(
             || self.write_children(left_runs, depth, part, left),
             || self.write_children(right_runs, depth, &mut behind, right),

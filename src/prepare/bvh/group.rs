@@ -51,7 +51,8 @@ impl Group {
         }
     }
 
-    /// The kind of all items, if they are of one and weigh 1 each, where so many weigh what this group does.
+    /// The kind of all of so many items, if they are of one and weigh 1 each. Of more than 2²⁴ it may take for one what weighs
+    /// more: then a cut is chosen as if it did not.
     pub(super) fn kind_of_units(&self, count: usize) -> Option<usize> {
         let kinds = self.kinds();
         (kinds.len() == 1 && self.weights[kinds.start] == count as f32).then_some(kinds.start)

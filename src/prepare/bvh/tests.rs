@@ -177,7 +177,7 @@ fn trees_of_nothing_and_of_one_item() {
 
 #[test]
 fn the_tree_is_the_same_for_any_number_of_threads() {
-    let mut items = scattered(150_000, 0.02);
+    let mut items = scattered(400_000, 0.02);
     for (item, kind) in items.iter_mut().zip(KINDS.into_iter().cycle()) {
         item.kind = kind;
     }
