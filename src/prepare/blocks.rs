@@ -133,3 +133,15 @@ impl SphereBlock {
         self.ids[lane] = id;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_touches_a_sphere_follows_from_its_square() {
+        for radius in [1.0_f32, 1.5, 0.1, 1.0 / 3.0, 1e-6, 1.999_999_9] {
+            assert_eq!(TOUCHING_OF_UNIT_SPHERE * (radius * radius), touch_distance(2.0 * radius) * radius);
+        }
+    }
+}

@@ -46,16 +46,19 @@ impl Sources<'_> {
 
     fn sphere_bounds(&self, index: usize) -> Bounds {
         let sphere = &self.geometry.spheres[index];
-        let (center, radius) = (self.scale.position(sphere.center), self.scale.length(sphere.radius));
-        // Outward by a rounding or two: the sum of centre and radius may round to the wrong side of the surface.
-        let (low, high) = (center - radius, center + radius);
-        let rounding = |end: Vec3| end.abs() * f32::EPSILON + f32::MIN_POSITIVE;
-        Bounds { low: low - rounding(low), high: high + rounding(high) }
+        bounds_of_sphere(self.scale.position(sphere.center), self.scale.length(sphere.radius))
     }
 
     fn corners(&self, vertices: [u32; 3]) -> [Vec3; 3] {
         vertices.map(|index| self.scale.position(self.geometry.vertices[index as usize]))
     }
+}
+
+fn bounds_of_sphere(center: Vec3, radius: f32) -> Bounds {
+    // Outward by a rounding or two: the sum of centre and radius may round to the wrong side of the surface.
+    let (low, high) = (center - radius, center + radius);
+    let rounding = |end: Vec3| end.abs() * f32::EPSILON + f32::MIN_POSITIVE;
+    Bounds { low: low - rounding(low), high: high + rounding(high) }
 }
 
 pub(super) fn bounds_of(points: &[Vec3]) -> Bounds {
@@ -123,5 +126,29 @@ impl Order<'_> {
             block.set(lane, self.sources.corners(triangle.vertices), triangle.id.0, extent);
         }
         block
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_box_of_a_sphere_holds_it_and_little_more(
+            center in [-2.0_f32..2.0, -1e-3..1e-3_f32, -1e-30..1e-30_f32],
+            radius in prop_oneof![1e-3_f32..2.0, 1e-9..1e-6_f32, 1e-37..1e-30_f32],
+        ) {
+            let Bounds { low, high } = bounds_of_sphere(Vec3::from(center), radius);
+            for (axis, center) in center.into_iter().enumerate() {
+                let (middle, radius) = (f64::from(center), f64::from(radius));
+                let beyond = [middle - radius - f64::from(low[axis]), f64::from(high[axis]) - (middle + radius)];
+                let most = 3.0 * f64::from(f32::EPSILON) * (middle.abs() + radius) + 2.0 * f64::from(f32::MIN_POSITIVE);
+                for beyond in beyond {
+                    prop_assert!(beyond > 0.0 && beyond <= most, "{beyond} beyond, at most {most}");
+                }
+            }
+        }
     }
 }

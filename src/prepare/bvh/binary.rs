@@ -134,18 +134,24 @@ mod tests {
             largest_leaf: 6,
             stays_whole: [false, true, false],
         };
-        let kinds = [Kind::Sphere, Kind::Triangle, Kind::Triangle, Kind::Polygon];
+        let mixed = [Kind::Sphere, Kind::Triangle, Kind::Triangle, Kind::Polygon];
+        for kinds in [mixed, [Kind::Polygon; 4]] {
+            check_costs(&costs, kinds);
+        }
+    }
+
+    fn check_costs(costs: &Costs, kinds: [Kind; 4]) {
         let items = (0..500_u16).zip(kinds.into_iter().cycle()).map(|(index, kind)| {
             let low = Vec3::new(f32::from(index % 7), f32::from(index % 11), f32::from(index % 13));
             Item { bounds: Bounds { low, high: low + 0.3 }, kind, weight: index % 5 }
         });
         let items = (0..).zip(items).map(|(index, item)| Reference::new(index, item));
-        let mut tree = build(items.collect(), &costs);
+        let mut tree = build(items.collect(), costs);
         let bounds = tree.forks[0].bounds;
         let spread = Spread::of(&tree.references);
-        let prices = Prices::new(&spread, &costs, tree.references.len());
+        let prices = Prices::new(&spread, costs, tree.references.len());
         let promised = grow(&mut tree.references, &mut tree.forks, &spread, 0, &prices).as_one_child();
-        let tree = collapse(tree, &costs);
+        let tree = collapse(tree, costs);
         let cost = tree.cost * bounds.half_area() + tree.nodes.len() as f64 * prices.node_memory;
         assert!((cost / promised - 1.0).abs() < 1e-12, "{cost}, promised {promised}");
     }

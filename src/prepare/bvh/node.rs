@@ -190,6 +190,35 @@ pub(crate) struct Leaf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whole numbers, so that middles and their sums are exact and often equal.
+        #[test]
+        fn orders_go_from_near_to_far_in_every_octant(corners in prop::collection::vec(prop::array::uniform3(-3_i8..4), 1..=WIDTH)) {
+            let mut node = Node::EMPTY;
+            let corners: Vec<Vec3> = corners.into_iter().map(|corner| Vec3::from(corner.map(f32::from))).collect();
+            for (slot, &low) in corners.iter().enumerate() {
+                node.set(slot, Bounds { low, high: low + 2.0 }, Child::leaf(Kind::Sphere, 0));
+            }
+            node.set_orders();
+            for (octant, order) in node.orders.iter().enumerate() {
+                let sign = |axis: usize| if octant >> axis & 1 == 1 { -1.0 } else { 1.0 };
+                let diagonal = Vec3::new(sign(0), sign(1), sign(2));
+                let mut expected: Vec<usize> = (0..corners.len()).collect();
+                expected.sort_by(|&one, &other| {
+                    // −0 is none less than 0.
+                    let along = |slot: usize| diagonal.dot(corners[slot]) + 0.0;
+                    // The opposite octant has the reverse, of equals too.
+                    let by_slot = if octant < 4 { one.cmp(&other) } else { other.cmp(&one) };
+                    along(one).total_cmp(&along(other)).then(by_slot)
+                });
+                let slots: Vec<usize> = (0..order.count()).map(|rank| order.slot(rank)).collect();
+                prop_assert_eq!(slots, expected, "octant {}", octant);
+            }
+        }
+    }
 
     #[test]
     fn children_unpack_to_what_they_were_made_of() {
