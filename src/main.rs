@@ -1,4 +1,4 @@
-//! The program: maps the result of a command to an exit code, nothing else.
+//! The program: its allocator, and the result of a command as an exit code; nothing else.
 
 #[cfg(target_os = "linux")]
 mod huge_pages;

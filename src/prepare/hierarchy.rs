@@ -53,7 +53,7 @@ pub(crate) enum Place {
 /// more, 1.15 times), rays were 0.98 and 0.99 times as fast (six sets of rays, 2026-11-23).
 ///
 /// What a node's memory costs was chosen so that rays are as fast as with none: then spheres take a fifth fewer nodes, and
-/// triangles up to a twentieth.
+/// triangles a twentieth (four sets of rays, 2026-11-23).
 const COSTS: Costs = Costs {
     node: 1.0,
     node_memory: 4.0,

@@ -23,7 +23,7 @@ impl Scale {
             Projection::PerspectiveAngle { .. } | Projection::PerspectiveWindow { .. } => 0.0,
         };
         let eye = scene.camera.eye.as_dvec3().abs().max_element();
-        Self::bringing_to_one(largest_coordinate(&scene.geometry).max(eye).max(window))
+        Self::bringing_to_one(farthest_coordinate(&scene.geometry).max(eye).max(window))
     }
 
     fn bringing_to_one(largest: f64) -> Self {
@@ -46,8 +46,8 @@ impl Scale {
     }
 }
 
-/// Largest magnitude of a coordinate of what there is, on the threads of the current pool.
-fn largest_coordinate(geometry: &Geometry) -> f64 {
+/// Largest magnitude of a coordinate of a sphere or vertex, on the threads of the current pool.
+fn farthest_coordinate(geometry: &Geometry) -> f64 {
     let of_spheres = geometry.spheres.par_iter().map(|sphere| {
         let farthest = sphere.center.as_dvec3().abs() + f64::from(sphere.radius);
         farthest.max_element()

@@ -16,7 +16,7 @@ const INVERSE_ODD_NUMBERS: [f64; 10] = [
     1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0, 1.0 / 19.0, 1.0 / 21.0,
 ];
 
-/// e^x for x ≤ 0, off by at most 2·2⁻⁵³ of itself, 2 ulp; 0 below −700, where f32 has long been 0.
+/// e^x for x ≤ 0, off by at most 2·2⁻⁵³ of itself, less than 2 ulp; 0 below −700, where f32 has long been 0.
 #[inline(always)]
 pub(super) fn exp<D: Double>(x: D) -> D {
     // The high part has enough zeros at its end for its product with a whole number to be exact. Source: Cody and Waite,
@@ -54,8 +54,8 @@ fn ln<D: Double>(x: D) -> D {
     let exponent = D::select(is_large, exponent + one, exponent);
     let s = (mantissa - one) / (mantissa + one);
     let square = s * s;
-    // |s| ≤ 0.172: the term after the last is below 2⁻⁵³.
     let twice = s + s;
+    // |s| ≤ 0.172: the term after the last is below 2⁻⁵³.
     exponent * D::splat(LN_2) + (twice + twice * (square * polynomial(&INVERSE_ODD_NUMBERS, square)))
 }
 

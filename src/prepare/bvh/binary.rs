@@ -38,7 +38,7 @@ pub(super) fn build(mut references: Vec<Reference>, costs: &Costs) -> BinaryTree
     let mut forks: Vec<Fork> = places.into_par_iter().map(|_| Fork::UNUSED).collect();
     if !references.is_empty() {
         let spread = Spread::of(&references);
-        let prices = Prices::new(&spread, costs, references.len());
+        let prices = Prices::new(&spread, references.len(), costs);
         grow(&mut references, &mut forks, &spread, 0, &prices);
     }
     BinaryTree { references, forks }
@@ -52,7 +52,8 @@ struct Prices<'a> {
 }
 
 impl<'a> Prices<'a> {
-    fn new(spread: &Spread, costs: &'a Costs, count: usize) -> Self {
+    /// Of so many items.
+    fn new(spread: &Spread, count: usize, costs: &'a Costs) -> Self {
         let node_memory = f64::from(costs.node_memory) * area_of(spread.group.extent.bounds()) / count as f64;
         Self { steps: costs, node_memory }
     }
@@ -149,7 +150,7 @@ mod tests {
         let mut tree = build(items.collect(), costs);
         let bounds = tree.forks[0].bounds;
         let spread = Spread::of(&tree.references);
-        let prices = Prices::new(&spread, costs, tree.references.len());
+        let prices = Prices::new(&spread, tree.references.len(), costs);
         let promised = grow(&mut tree.references, &mut tree.forks, &spread, 0, &prices).as_one_child();
         let tree = collapse(tree, costs);
         let cost = tree.cost * bounds.half_area() + tree.nodes.len() as f64 * prices.node_memory;

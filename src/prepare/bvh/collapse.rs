@@ -2,9 +2,8 @@
 
 use super::binary::{BinaryTree, Fork};
 use super::cost::of_tree;
-use super::node::Unpacked;
 use super::reference::Reference;
-use super::{Bounds, Child, Costs, Kind, Leaf, Node, Tree, WIDTH, word};
+use super::{Bounds, Child, Costs, Kind, Leaf, Node, Tree, Unpacked, WIDTH, word};
 use rayon::prelude::*;
 
 /// Below nodes over so many items, children are written in two parts at once.
@@ -65,7 +64,7 @@ impl Part {
     /// Puts another behind, and returns its children as they are called here.
     fn append(&mut self, other: Self) -> impl Fn(Child) -> Child + use<> {
         let nodes = word(self.nodes.len());
-        let leaves = [0, 1, 2].map(|kind| word(self.leaves[kind].len()));
+        let leaves = self.leaves.each_ref().map(|leaves| word(leaves.len()));
         let moved = move |child: Child| match child.unpack() {
             Unpacked::Empty => child,
             Unpacked::Inner(index) => Child::inner(nodes + index),
